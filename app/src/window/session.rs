@@ -10,7 +10,9 @@ use lovelock_panes::live::Live;
 use lovelock_project::Project;
 use lovelock_project::error::{Place, Problem, ProjectError};
 use lovelock_project::files::Access;
-use lovelock_session::render_thread::{ImageQuality, RenderRequest, RenderThread, RenderedImage, ShownMask};
+use lovelock_session::render_thread::{
+    ImageQuality, Inputs, RenderRequest, RenderThread, RenderedImage, ShownMask,
+};
 use lovelock_session::resolution::Resolution;
 use lovelock_session::scene::Scene;
 use lovelock_session::snapshot::FrameSnapshot;
@@ -53,8 +55,8 @@ pub(crate) struct Session {
     access: Access,
     /// The project that was last sent to the simulation.
     simulated: Arc<Project>,
-    /// Inputs of the user so far that an image shows: settings that it is drawn with, movements of a brush, and other hair.
-    inputs: u64,
+    /// Inputs of the user so far that an image shows.
+    inputs: Inputs,
     /// The last request to the render thread.
     pub(crate) drawn: Option<RenderRequest>,
     resolution: Resolution,
@@ -130,7 +132,7 @@ impl Session {
             live,
             access,
             simulated: Arc::clone(project),
-            inputs: 0,
+            inputs: Inputs::default(),
             drawn: None,
             resolution: Resolution::default(),
             same_since: Stopwatch::start(),
@@ -270,7 +272,7 @@ impl Session {
                     self.failed.push(message);
                 }
                 Event::Brushed(brushed) => {
-                    self.inputs += 1;
+                    self.inputs.brushed();
                     self.brushed.push(brushed);
                 }
                 Event::Panicked { thread, message } => {
@@ -337,7 +339,7 @@ impl Session {
     ) -> Option<Duration> {
         let changed = !Arc::ptr_eq(project, &self.simulated);
         if changed {
-            self.inputs += u64::from(looks_other(&self.simulated, project));
+            self.inputs.changed(&self.simulated, project);
             self.simulated = Arc::clone(project);
             self.worker.set_project(Arc::clone(project), self.access.clone());
             self.working.get_or_insert_with(Stopwatch::start);
@@ -368,11 +370,7 @@ impl Session {
         if !same {
             self.same_since = Stopwatch::start();
         }
-        let other_hair = self
-            .drawn
-            .as_ref()
-            .is_some_and(|drawn| !Arc::ptr_eq(&drawn.snapshot.scene.style, &frame.scene.style));
-        self.inputs += u64::from(other_hair);
+        self.inputs.drawn(&frame.scene.style);
         let still = !self.playing && self.same_since.elapsed() >= AT_REST;
         let automatic = self.view.rate.is_some();
         let scale = if still || !automatic { 1.0 } else { self.resolution.scale() };
@@ -388,7 +386,7 @@ impl Session {
             },
             measured: self.view.measured,
             mask: mask.cloned(),
-            input: self.inputs,
+            input: self.inputs.number(),
         };
         // At rest an image is only replaced by a better one; its scale follows the next movement.
         let fresh = same
@@ -475,10 +473,4 @@ impl Session {
         self.problems = problems;
         self.scene = Some(scene);
     }
-}
-
-/// Whether an image of the same hair and body looks different with another project. Hair that must be loaded first is seen later.
-fn looks_other(before: &Project, after: &Project) -> bool {
-    (&before.look, &before.shadow, &before.lights, &before.camera, &before.picture)
-        != (&after.look, &after.shadow, &after.lights, &after.camera, &after.picture)
 }

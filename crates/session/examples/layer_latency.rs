@@ -1,8 +1,9 @@
-//! The time from a change of a layer, and from a movement of a brush, to the image that shows it, while the dance plays:
+//! The time from a change of a layer, and from a movement of a brush, to the image that shows it, while the dance plays and while it pauses:
 //! `cargo run --release -p lovelock-session --example layer_latency -- [CHANGES] [WIDTHxHEIGHT]`.
 //!
 //! The threads are those of the window: the loader evaluates the stack, the simulation takes the new hair, and the render thread draws
-//! on the CPU. It prints the spread for the smooth style and for one of 20,000 strands, and how many images were drawn per second.
+//! on the CPU. It prints the spread for the smooth style and for one of 20,000 strands, how many images were drawn per second, and how many of
+//! them show only what has moved.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -16,7 +17,7 @@ use lovelock_groom::Preset;
 use lovelock_project::Project;
 use lovelock_project::files::Access;
 use lovelock_render::Backend;
-use lovelock_session::render_thread::{ImageQuality, RenderRequest, RenderThread};
+use lovelock_session::render_thread::{ImageQuality, Inputs, RenderRequest, RenderThread, RenderedImage};
 use lovelock_session::snapshot::FrameSnapshot;
 use lovelock_session::strokes::StrokeStart;
 use lovelock_session::window_device::WindowDevice;
@@ -44,12 +45,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         for operation in [Operation::from(Lift::default()), Curl::default().into(), Frizz::default().into()] {
             project.hair.stack.push(Layer { ramp: Ramp::line(0.2, 1.0), ..Layer::of(operation) });
         }
-        for (layer, what) in [(0, "the first of three layers"), (2, "the last of three layers")] {
-            let measured = measure(&project, layer, changes, size)?;
-            println!("{name}, {} strands, {what}: {measured}", measured.strands);
+        for (plays, state) in [(true, "playing"), (false, "paused")] {
+            for (layer, what) in [(0, "the first of three layers"), (2, "the last of three layers")] {
+                let measured = measure(&project, layer, changes, (size, plays))?;
+                println!("{name}, {} strands, {state}, {what}: {measured}", measured.strands);
+            }
+            let measured = measure_strokes(&project, changes, (size, plays))?;
+            println!(
+                "{name}, {} strands, {state}, a movement of the brush Smooth: {measured}",
+                measured.strands
+            );
         }
-        let measured = measure_strokes(&project, changes, size)?;
-        println!("{name}, {} strands, a movement of the brush Smooth: {measured}", measured.strands);
     }
     Ok(())
 }
@@ -60,6 +66,8 @@ struct Measured {
     /// Times to the loaded scene, the frame and the image, milliseconds.
     times_ms: [Vec<f64>; 3],
     images_per_sec: f64,
+    /// Of the images those that show only what has moved, percent.
+    partial: f64,
 }
 
 impl std::fmt::Display for Measured {
@@ -69,7 +77,7 @@ impl std::fmt::Display for Measured {
             let at = |part: f64| times[((times.len() - 1) as f64 * part).round() as usize];
             write!(f, "{name} {:.0} ms ({:.0} to {:.0}), ", at(0.5), at(0.1), at(0.9))?;
         }
-        write!(f, "{:.0} images per second", self.images_per_sec)
+        write!(f, "{:.0} images per second, {:.0} % of them in part", self.images_per_sec, self.partial)
     }
 }
 
@@ -81,17 +89,23 @@ struct Threads {
     project: Arc<Project>,
     size: [u32; 2],
     drawn: Option<Arc<FrameSnapshot>>,
-    /// Changes so far that an image shows, as the window counts them.
-    inputs: u64,
+    /// Whether the scene of the project is loaded.
+    is_loaded: bool,
+    inputs: Inputs,
     seen: u64,
     images: usize,
+    /// Images that show only what has moved.
+    partial: usize,
     /// Reports of brushes so far.
     brushed: usize,
 }
 
 impl Threads {
-    /// Starts the threads and waits until the dance has run for a while. Returns the instant of the newest image.
-    fn start(project: &Project, size: [u32; 2]) -> Result<(Self, Arc<FrameSnapshot>), Box<dyn Error>> {
+    /// Starts the threads and waits until the dance has run for a while, and pauses it unless it `plays`. Returns the newest image.
+    fn start(
+        project: &Project,
+        (size, plays): ([u32; 2], bool),
+    ) -> Result<(Self, Arc<RenderedImage>), Box<dyn Error>> {
         let (send, woken) = sync_channel(1);
         // One that waits is enough.
         let wake = move || {
@@ -107,9 +121,11 @@ impl Threads {
             project,
             size,
             drawn: None,
-            inputs: 0,
+            is_loaded: false,
+            inputs: Inputs::default(),
             seen: 0,
             images: 0,
+            partial: 0,
             brushed: 0,
         };
         let watch = Stopwatch::start();
@@ -121,21 +137,33 @@ impl Threads {
                 return Err("no image".into());
             }
         };
-        let watch = Stopwatch::start();
-        while watch.secs() < 3.0 {
-            shown = threads.turn()?.unwrap_or(shown);
+        for secs in [2.0, 1.0] {
+            let watch = Stopwatch::start();
+            while watch.secs() < secs {
+                shown = threads.turn()?.unwrap_or(shown);
+            }
+            threads.worker.set_playing(plays);
         }
         Ok((threads, shown))
     }
 
-    /// Waits for something new and hands frames on to the render thread, as the window does. Returns the style of the newest image.
-    fn turn(&mut self) -> Result<Option<Arc<FrameSnapshot>>, Box<dyn Error>> {
+    /// The images so far and those that show only what has moved, since an earlier count over so many seconds.
+    fn rates(&self, [images, partial]: [usize; 2], secs: f64) -> [f64; 2] {
+        let images = (self.images - images) as f64;
+        [images / secs, 100.0 * (self.partial - partial) as f64 / images.max(1.0)]
+    }
+
+    /// Waits for something new and hands frames on to the render thread, as the window does. Returns the newest image.
+    fn turn(&mut self) -> Result<Option<Arc<RenderedImage>>, Box<dyn Error>> {
         match self.woken.recv_timeout(Duration::from_millis(200)) {
             Ok(()) | Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return Err("the threads ended".into()),
         }
         while self.woken.try_recv().is_ok() {}
         while let Some(event) = self.worker.poll_event() {
+            if let Event::Loaded { project, .. } = &event {
+                self.is_loaded |= Arc::ptr_eq(project, &self.project);
+            }
             if let Event::Brushed(report) = event {
                 self.brushed += 1;
                 let mut changed = (*self.project).clone();
@@ -143,16 +171,14 @@ impl Threads {
                     layer.operation = Operation::Hand(Hand { edits: report.edits });
                 }
                 self.project = Arc::new(changed);
-                self.inputs += 1;
+                self.inputs.brushed();
                 self.worker.set_project(Arc::clone(&self.project), Access::new());
             }
         }
         if let Some(frame) = self.worker.frame()
             && self.drawn.as_ref().is_none_or(|drawn| !Arc::ptr_eq(drawn, &frame))
         {
-            let other_hair =
-                |drawn: &Arc<FrameSnapshot>| !Arc::ptr_eq(&drawn.scene.style, &frame.scene.style);
-            self.inputs += u64::from(self.drawn.as_ref().is_some_and(other_hair));
+            self.inputs.drawn(&frame.scene.style);
             self.painter.request(RenderRequest {
                 project: Arc::clone(&self.project),
                 snapshot: Arc::clone(&frame),
@@ -160,13 +186,14 @@ impl Threads {
                 quality: ImageQuality::Draft,
                 measured: false,
                 mask: None,
-                input: self.inputs,
+                input: self.inputs.number(),
             });
             self.drawn = Some(frame);
         }
         let image = self.painter.images().newer_than(&mut self.seen);
         self.images += usize::from(image.is_some());
-        Ok(image.map(|image| Arc::clone(&image.snapshot)))
+        self.partial += usize::from(image.as_ref().is_some_and(|image| image.stats.redrawn.is_some()));
+        Ok(image)
     }
 }
 
@@ -174,23 +201,24 @@ fn measure(
     project: &Project,
     layer: usize,
     changes: usize,
-    size: [u32; 2],
+    view: ([u32; 2], bool),
 ) -> Result<Measured, Box<dyn Error>> {
-    let (mut threads, mut shown) = Threads::start(project, size)?;
-    let strands = shown.scene.style.strands.count();
+    let (mut threads, mut shown) = Threads::start(project, view)?;
+    let strands = shown.snapshot.scene.style.strands.count();
     let mut times_ms = [Vec::new(), Vec::new(), Vec::new()];
-    let (images, whole) = (threads.images, Stopwatch::start());
+    let (images, whole) = ([threads.images, threads.partial], Stopwatch::start());
     for change in 0..changes {
         let mut changed = (*threads.project).clone();
         changed.hair.stack.layers[layer].weight = 0.5 + 0.01 * (change % 50) as f32;
-        let before = Arc::clone(&shown.scene.style);
+        let before = Arc::clone(&shown.snapshot.scene.style);
         threads.project = Arc::new(changed);
+        threads.is_loaded = false;
         let watch = Stopwatch::start();
         threads.worker.set_project(Arc::clone(&threads.project), Access::new());
         let (mut loaded, mut framed) = (None, None);
         loop {
             let image = threads.turn()?;
-            if loaded.is_none() && threads.worker.load_progress().is_none() {
+            if loaded.is_none() && threads.is_loaded {
                 loaded = Some(watch.ms());
             }
             let is_new = |frame: &Arc<FrameSnapshot>| !Arc::ptr_eq(&frame.scene.style, &before);
@@ -198,7 +226,7 @@ fn measure(
                 framed = Some(watch.ms());
             }
             if let Some(image) = image {
-                let done = is_new(&image);
+                let done = is_new(&image.snapshot);
                 shown = image;
                 if done {
                     break;
@@ -220,19 +248,23 @@ fn measure(
             shown = threads.turn()?.unwrap_or(shown);
         }
     }
-    let images_per_sec = (threads.images - images) as f64 / whole.secs();
+    let [images_per_sec, partial] = threads.rates(images, whole.secs());
     for times in &mut times_ms {
         times.sort_unstable_by(f64::total_cmp);
     }
-    Ok(Measured { strands, times_ms, images_per_sec })
+    Ok(Measured { strands, times_ms, images_per_sec, partial })
 }
 
 /// The time from movements of a brush that smooths, each a few millimetres long, with the edits written into the project as the window does.
-fn measure_strokes(project: &Project, changes: usize, size: [u32; 2]) -> Result<Measured, Box<dyn Error>> {
+fn measure_strokes(
+    project: &Project,
+    changes: usize,
+    view: ([u32; 2], bool),
+) -> Result<Measured, Box<dyn Error>> {
     let mut project = project.clone();
     let layer = project.hair.stack.push(Layer::of(Hand::default())).ok_or("too many layers")?;
-    let (mut threads, mut shown) = Threads::start(&project, size)?;
-    let strands = shown.scene.style.strands.count();
+    let (mut threads, mut shown) = Threads::start(&project, view)?;
+    let strands = shown.snapshot.scene.style.strands.count();
     let settings = BrushSettings { front_only: false, ..BrushSettings::default() };
     let tool = Tool::Smooth;
     let edits = HandEdits::default();
@@ -246,7 +278,7 @@ fn measure_strokes(project: &Project, changes: usize, size: [u32; 2]) -> Result<
         after: None,
     });
     let mut times_ms = [Vec::new(), Vec::new(), Vec::new()];
-    let (images, whole) = (threads.images, Stopwatch::start());
+    let (images, whole) = ([threads.images, threads.partial], Stopwatch::start());
     for change in 0..changes {
         // Back and forth over the hair on the wearer's left.
         let step = Vec3::Z * if change % 20 < 10 { 0.009 } else { -0.009 };
@@ -260,22 +292,21 @@ fn measure_strokes(project: &Project, changes: usize, size: [u32; 2]) -> Result<
         };
         let (reports, watch) = (threads.brushed, Stopwatch::start());
         threads.worker.stroke_to(1, vec![sample]);
-        let (mut applied, mut framed) = (None, None::<(f64, Arc<FrameSnapshot>)>);
+        let (mut applied, mut framed) = (None, None::<(f64, u64)>);
         loop {
             let before = threads.drawn.clone();
             let image = threads.turn()?;
             if applied.is_none() && threads.brushed > reports {
                 applied = Some(watch.ms());
             }
-            if let (Some(_), None, Some(now)) = (applied, &framed, &threads.drawn)
+            if let (Some(_), None, Some(now)) = (applied, framed, &threads.drawn)
                 && before.is_none_or(|before| !Arc::ptr_eq(&before, now))
             {
-                framed = Some((watch.ms(), Arc::clone(now)));
+                framed = Some((watch.ms(), threads.inputs.number()));
             }
             if let Some(image) = image {
                 shown = image;
-                let is_there = |(_, frame): &(f64, Arc<FrameSnapshot>)| shown.time_secs >= frame.time_secs;
-                if framed.as_ref().is_some_and(is_there) {
+                if framed.is_some_and(|(_, input)| shown.input >= input) {
                     break;
                 }
             }
@@ -298,9 +329,9 @@ fn measure_strokes(project: &Project, changes: usize, size: [u32; 2]) -> Result<
     if times_ms[0].is_empty() {
         return Err("no movement of the brush touched hair".into());
     }
-    let images_per_sec = (threads.images - images) as f64 / whole.secs();
+    let [images_per_sec, partial] = threads.rates(images, whole.secs());
     for times in &mut times_ms {
         times.sort_unstable_by(f64::total_cmp);
     }
-    Ok(Measured { strands, times_ms, images_per_sec })
+    Ok(Measured { strands, times_ms, images_per_sec, partial })
 }

@@ -37,8 +37,8 @@ pub struct RenderRequest {
     pub measured: bool,
     /// A mask that is shown on hair and scalp in place of their colours.
     pub mask: Option<Arc<ShownMask>>,
-    /// Rises with each input of the user that the image shows, and not with the frames of a dance. The CPU gives up an image that has
-    /// hardly begun if a request with another number waits.
+    /// Rises with each input of the user that the image shows, and not with the frames of a dance: see [`Inputs`](super::Inputs). The CPU
+    /// gives up an image that has hardly begun if a request with another number waits.
     pub input: u64,
 }
 
@@ -61,6 +61,8 @@ pub struct RenderedImage {
     pub step: u64,
     /// [`FrameSnapshot::position_secs`] of the instant.
     pub position_secs: f64,
+    /// [`RenderRequest::input`] of its request.
+    pub input: u64,
     /// The number of samples of each pixel.
     pub samples: u32,
     /// The project that it shows.

@@ -1,5 +1,7 @@
 //! The render thread: takes the newest request when it is free, renders it and publishes the image.
 
+mod failing;
+mod inputs;
 mod mask_view;
 mod messages;
 mod patience;
@@ -20,10 +22,12 @@ use lovelock_render::{
 use crate::latest::{Job, Latest, LatestJob};
 use crate::memory::Held;
 use crate::window_device::WindowDevice;
+use failing::MAX_FAILURES;
+pub use inputs::Inputs;
 use mask_view::MaskView;
 pub use mask_view::ShownMask;
 pub use messages::{Adapter, ImageQuality, RenderRequest, RenderedImage};
-use patience::Patience;
+use patience::{Part, Patience};
 use samples::{Samples, jitter};
 
 /// Why there is no newer image.
@@ -39,9 +43,6 @@ type Open = Box<dyn FnMut(Backend, Option<&Arc<Gpu>>) -> Result<Renderer, Render
 
 /// How long the thread waits for the device or for a request before it looks at the other one.
 const PATIENCE: Duration = Duration::from_millis(1);
-
-/// Number of consecutive failures after which a graphics device is no longer reopened automatically.
-const MAX_FAILURES: u32 = 3;
 
 /// Renders on a thread of its own. Requests that arrive while it renders replace each other.
 #[derive(Debug)]
@@ -61,13 +62,14 @@ impl RenderThread {
     /// # Errors
     /// If the system cannot create a thread.
     pub fn start(window: WindowDevice, on_rendered: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        Self::start_with(Box::new(Renderer::open_for), window, on_rendered)
+        Self::start_with(Box::new(Renderer::open_for), window, Patience::default(), on_rendered)
     }
 
     /// As [`RenderThread::start`], with renderers from `open`.
     fn start_with(
         open: Open,
         window: WindowDevice,
+        patience: Patience,
         on_rendered: impl Fn() + Send + 'static,
     ) -> std::io::Result<Self> {
         let jobs = LatestJob::default();
@@ -87,8 +89,9 @@ impl RenderThread {
             textures: None,
             last: None,
             samples: Samples::default(),
+            partial: None,
             mask: MaskView::default(),
-            patience: Patience::default(),
+            patience,
             picture: Picture::default(),
             cost: None,
             transmittance: 1.0,
@@ -138,7 +141,8 @@ impl RenderThread {
         self.adapter.latest()
     }
 
-    /// Whether an image is being rendered or waits; `on_rendered` is called when it is done.
+    /// Whether an image is being rendered or waits; `on_rendered` is called when it is done. What completes an image that is shown already
+    /// does not count.
     pub fn busy(&self) -> Arc<AtomicBool> {
         Arc::clone(self.jobs.busy())
     }
@@ -177,6 +181,8 @@ struct Worker {
     /// The request that was rendered last, and its samples so far.
     last: Option<RenderRequest>,
     samples: Samples,
+    /// The request whose image shows only what has moved so far.
+    partial: Option<RenderRequest>,
     mask: MaskView,
     patience: Patience,
     picture: Picture,
@@ -199,6 +205,8 @@ struct Worker {
 /// What the thread does next.
 enum Work {
     Image(RenderRequest),
+    /// The whole of an image that shows only what has moved.
+    Whole(RenderRequest),
     /// Another sample of the last image, which stands still.
     Sample(RenderRequest),
     /// To free what is kept.
@@ -217,21 +225,24 @@ impl Work {
 impl Worker {
     fn run(mut self) {
         while let Some(work) = self.next() {
-            let (request, is_sample) = match work {
-                Work::Image(request) => (request, false),
-                Work::Sample(request) => (request, true),
+            let (request, part) = match work {
+                Work::Image(request) => (request, Part::Image),
+                Work::Whole(request) => (request, Part::Whole),
+                Work::Sample(request) => (request, Part::Sample),
                 Work::Rest => {
                     self.rest();
                     continue;
                 }
             };
+            self.partial = None;
             // A panic while rendering costs the device and one image, but not the window.
-            let result = catch_unwind(AssertUnwindSafe(|| self.render(&request, is_sample)));
+            let result = catch_unwind(AssertUnwindSafe(|| self.render(&request, part)));
             let again = match result {
                 Ok(Ok(image)) => {
                     if self.in_flight() == 0 {
                         self.failed = 0;
                     }
+                    self.partial = image.stats.redrawn.map(|_| request.clone());
                     self.images.put(Arc::new(image));
                     self.last = Some(request.clone());
                     false
@@ -254,7 +265,7 @@ impl Worker {
                 }
             };
             self.held.set(self.bytes());
-            if again || !is_sample {
+            if again || part == Part::Image {
                 self.jobs.done(again.then_some(request));
             }
             (self.on_rendered)();
@@ -263,7 +274,7 @@ impl Worker {
 
     /// Frees what is kept for further requests.
     fn rest(&mut self) {
-        (self.opened, self.textures, self.last) = (None, None, None);
+        (self.opened, self.textures, self.last, self.partial) = (None, None, None, None);
         (self.samples, self.mask, self.picture) =
             (Samples::default(), MaskView::default(), Picture::default());
         self.images.clear();
@@ -292,8 +303,8 @@ impl Worker {
                 continue;
             }
             let in_flight = opened.map_or(0, Renderer::in_flight);
-            let sample = self.last.as_ref().filter(|last| self.samples.wants_more(last));
-            if in_flight == 0 && sample.is_none() {
+            let further = self.further();
+            if in_flight == 0 && further.is_none() {
                 return self.jobs.next().map(Work::of);
             }
             let most = if in_flight > 0 { PATIENCE } else { Duration::ZERO };
@@ -301,9 +312,17 @@ impl Worker {
                 return Some(Work::of(job));
             }
             if in_flight == 0 {
-                return sample.cloned().map(Work::Sample);
+                return further;
             }
         }
+    }
+
+    /// What is drawn while nothing else is wanted.
+    fn further(&self) -> Option<Work> {
+        if let Some(partial) = &self.partial {
+            return Some(Work::Whole(partial.clone()));
+        }
+        self.last.as_ref().filter(|last| self.samples.wants_more(last)).cloned().map(Work::Sample)
     }
 
     /// Takes the reports of finished images.
@@ -332,70 +351,11 @@ impl Worker {
         }
     }
 
-    /// Reports an error. Returns whether to render the request again.
-    fn take_error(&mut self, error: &RenderError, request: &RenderRequest) -> bool {
-        let opened_on_window = self.opened.as_ref().and_then(|opened| opened.window.clone());
-        if let Some(gpu) = opened_on_window.or_else(|| self.window.get()).filter(|gpu| gpu.is_lost()) {
-            // The window opens another device and asks again. A loss that two images notice is one loss.
-            self.opened = None;
-            let known = self.lost.as_ref().is_some_and(|lost| lost.is_same_device(&gpu));
-            if known && self.failures.latest().is_some_and(|last| last.pictures == self.images.number()) {
-                return false;
-            }
-            // What failed first may not name the loss.
-            self.fail(gpu.check().map_or_else(|loss| loss.to_string(), |()| error.to_string()));
-            self.lost = Some(gpu);
-            self.failed = self.failed.saturating_add(1);
-            if self.failed >= MAX_FAILURES {
-                self.give_up(request);
-            }
-            return false;
-        }
-        self.fail(error.to_string());
-        device_is_gone(error) && self.try_again(request.project.picture.backend)
-    }
-
-    fn fail(&self, message: String) {
-        self.failures.put(Arc::new(Failure { message, pictures: self.images.number() }));
-    }
-
-    /// Closes the renderer after a failure. Returns whether to render the same request again.
-    fn try_again(&mut self, choice: Backend) -> bool {
-        let by_processor = self.opened.take().is_some_and(|opened| opened.renderer.backend() == Backend::Cpu);
-        self.failed = self.failed.saturating_add(1);
-        if self.failed < MAX_FAILURES {
-            return true;
-        }
-        if choice != Backend::Auto || self.card_given_up || by_processor {
-            return false;
-        }
-        self.give_up_card();
-        true
-    }
-
-    /// Stops using a card that is lost again and again with this request.
-    fn give_up(&mut self, request: &RenderRequest) {
-        match request.project.picture.backend {
-            Backend::Auto => self.give_up_card(),
-            _ => self.refused = Some(Arc::clone(&request.project)),
-        }
-        self.failed = 0;
-    }
-
-    fn give_up_card(&mut self) {
-        self.card_given_up = true;
-        self.notices.put(Arc::new(format!(
-            "The graphics card failed {MAX_FAILURES} times in a row: the processor renders from now on. Choose \
-             \"{}\" in Picture to try the card again.",
-            Backend::Gpu.label()
-        )));
-    }
-
     fn in_flight(&self) -> usize {
         self.opened.as_ref().map_or(0, |opened| opened.renderer.in_flight())
     }
 
-    fn render(&mut self, request: &RenderRequest, is_sample: bool) -> Result<RenderedImage, RenderError> {
+    fn render(&mut self, request: &RenderRequest, part: Part) -> Result<RenderedImage, RenderError> {
         let choice = request.project.picture.backend;
         if self.refused.as_ref().is_some_and(|refused| Arc::ptr_eq(refused, &request.project)) {
             let why = format!(
@@ -429,11 +389,13 @@ impl Worker {
         };
         let jobs = self.jobs.clone();
         let waiting = move || jobs.peek(|waiting| waiting.input);
-        let for_newer = self.patience.interrupt((request.input, is_sample), waiting);
+        let for_newer = self.patience.interrupt((request.input, part), waiting);
         let jobs = self.jobs.clone();
         renderer.set_interrupt(Some(Interrupt::new(move || {
             jobs.is_dropped() || for_newer.as_ref().is_some_and(Interrupt::is_due)
         })));
+        let moves = part == Part::Image && request.quality == ImageQuality::Draft;
+        renderer.set_hurrying(moves && self.patience.hurries());
         let RenderRequest { project, snapshot, size, measured, .. } = request;
         let mut times = snapshot.times;
         let camera = snapshot.camera(&project.camera);
@@ -457,7 +419,7 @@ impl Worker {
         } else if request.quality == ImageQuality::Refined
             && (renderer.backend() == Backend::Cpu || project.camera.lens.enabled)
         {
-            let index = if is_sample { self.samples.taken() } else { 0 };
+            let index = if part == Part::Sample { self.samples.taken() } else { 0 };
             let lens = snapshot.lens(&project.camera, &camera);
             let jittered = camera.moved_by_pixels(jitter(index, lens.is_some()), size[1]);
             let jittered = lens.map_or(jittered, |lens| lens.camera(&jittered, index));
@@ -480,14 +442,16 @@ impl Worker {
             stats.draw_ms = (ms - stats.interpolate_ms - stats.shadow_ms).max(0.0);
             stats.mean_transmittance = self.transmittance;
             stats.shadow_fallbacks = self.fallbacks;
-        } else {
+        } else if stats.redrawn.is_none() {
             self.cost = Some((*size, stats.interpolate_ms + stats.shadow_ms + stats.draw_ms));
         }
-        self.patience.finished();
+        self.patience.finished(stats.redrawn.is_some());
         times.take_picture(&stats);
         let (step, position_secs) = (snapshot.step, snapshot.position_secs);
         let (samples, snapshot) = (self.samples.taken().max(1), Arc::clone(snapshot));
-        let (cost, mask) = (self.cost, request.mask.clone());
+        // Of a part nobody can tell what the whole would take.
+        let cost = self.cost.filter(|_| stats.redrawn.is_none());
+        let mask = request.mask.clone();
         let project = Arc::clone(project);
         Ok(RenderedImage {
             image,
@@ -498,6 +462,7 @@ impl Worker {
             snapshot,
             step,
             position_secs,
+            input: request.input,
             samples,
             project,
             mask,
@@ -510,17 +475,6 @@ fn same_device(a: Option<&Arc<Gpu>>, b: Option<&Arc<Gpu>>) -> bool {
     match (a, b) {
         (Some(a), Some(b)) => a.is_same_device(b),
         (a, b) => a.is_none() && b.is_none(),
-    }
-}
-
-/// Whether the renderer must be opened again. Opening it again does not help if a shader does not compile, something does not
-/// fit into memory, or there is no adapter.
-fn device_is_gone(error: &RenderError) -> bool {
-    match error {
-        RenderError::Gpu(error) => {
-            !matches!(error, GpuError::Shader(_) | GpuError::NoAdapter(_) | GpuError::Input(_))
-        }
-        _ => false,
     }
 }
 

@@ -1,4 +1,4 @@
-//! Which images are given up for newer input.
+//! Which images are given up for newer input, and which show first what has moved.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,32 +9,81 @@ use lovelock_render::Interrupt;
 
 /// Weight of the newest image in the usual time.
 const NEWEST: f64 = 0.3;
+/// Images that usually take longer than this show first what has moved, seconds: quicker ones follow a hand as they are.
+const HURRIED_FROM_SECS: f64 = 0.04;
+/// The longest time for which images show only what has moved, before a whole one must be finished.
+const LONGEST_LATE: Duration = Duration::from_secs(1);
+
+/// What of an image is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    /// The image, or first what has moved.
+    Image,
+    /// The whole of an image that shows only what has moved.
+    Whole,
+    /// A further sample of an image that is shown already.
+    Sample,
+}
 
 /// Gives up an image for a newer input while it has taken less than a third of the usual time: later, it is finished sooner than another
-/// one would be. No two images in a row are given up, so that input which never stops is seen too. A further sample of an image that
-/// is shown already is given up at any time.
-#[derive(Debug, Default)]
+/// one would be. No two images in a row are given up, so that input which never stops is seen too. What only completes an image that is shown
+/// already is given up at any time.
+#[derive(Debug)]
 pub(super) struct Patience {
+    /// See [`HURRIED_FROM_SECS`] and [`LONGEST_LATE`].
+    hurried_from_secs: f64,
+    longest_late: Duration,
     /// The average time of an image, seconds; 0 before the first.
     usual_secs: f64,
     watch: Option<Stopwatch>,
+    /// Since when images show only what has moved.
+    late: Option<Stopwatch>,
     /// Whether the image that was begun last has been given up.
     gave_up: Arc<AtomicBool>,
 }
 
+impl Default for Patience {
+    fn default() -> Self {
+        Self::with_limits(HURRIED_FROM_SECS, LONGEST_LATE)
+    }
+}
+
 impl Patience {
-    /// What ends an image of `input` early, or a further sample of it, which begins now; `None` if it must be finished. `waiting` returns
-    /// the input of the request that waits, if any.
+    /// One with other limits than the usual ones.
+    pub(super) fn with_limits(hurried_from_secs: f64, longest_late: Duration) -> Self {
+        Self {
+            hurried_from_secs,
+            longest_late,
+            usual_secs: 0.0,
+            watch: None,
+            late: None,
+            gave_up: Arc::default(),
+        }
+    }
+
+    /// Whether the next image may show first what has moved.
+    pub(super) fn hurries(&self) -> bool {
+        let is_late = self.late.is_some_and(|since| since.elapsed() >= self.longest_late);
+        self.usual_secs > self.hurried_from_secs && !is_late
+    }
+
+    /// What ends a part of an image of `input` early, which begins now; `None` if it must be finished. `waiting` returns the input of the
+    /// request that waits, if any.
     pub(super) fn interrupt(
         &mut self,
-        (input, is_sample): (u64, bool),
+        (input, part): (u64, Part),
         waiting: impl Fn() -> Option<u64> + Send + Sync + 'static,
     ) -> Option<Interrupt> {
         let watch = Stopwatch::start();
-        self.watch = Some(watch).filter(|_| !is_sample);
+        self.watch = Some(watch).filter(|_| part != Part::Sample);
         let after_another = self.gave_up.swap(false, Ordering::Relaxed);
-        if is_sample {
-            return Some(Interrupt::new(move || waiting().is_some()));
+        match part {
+            Part::Image => {}
+            // Frames of the same input would not be finished sooner.
+            Part::Whole => {
+                return Some(Interrupt::new(move || waiting().is_some_and(|waiting| waiting != input)));
+            }
+            Part::Sample => return Some(Interrupt::new(move || waiting().is_some())),
         }
         if after_another || self.usual_secs <= 0.0 {
             return None;
@@ -51,10 +100,16 @@ impl Patience {
         }))
     }
 
-    /// Takes the time of the image that was finished.
-    pub(super) fn finished(&mut self) {
+    /// Takes the time of the image that was finished, unless it shows only what has moved.
+    pub(super) fn finished(&mut self, is_partial: bool) {
         self.gave_up.store(false, Ordering::Relaxed);
-        let Some(watch) = self.watch.take() else { return };
+        let watch = self.watch.take();
+        if is_partial {
+            self.late.get_or_insert_with(Stopwatch::start);
+            return;
+        }
+        self.late = None;
+        let Some(watch) = watch else { return };
         let secs = watch.secs();
         self.usual_secs =
             if self.usual_secs > 0.0 { self.usual_secs + NEWEST * (secs - self.usual_secs) } else { secs };
@@ -65,25 +120,49 @@ impl Patience {
 mod tests {
     use super::*;
 
+    /// Whether a part of an image of input 1 is given up while `waiting` waits.
+    fn is_due(patience: &mut Patience, part: Part, waiting: Option<u64>) -> bool {
+        patience.interrupt((1, part), move || waiting).is_some_and(|interrupt| interrupt.is_due())
+    }
+
     #[test]
     fn an_image_is_given_up_early_for_other_input_and_not_twice_in_a_row() {
         let mut patience = Patience::default();
-        assert!(patience.interrupt((1, false), || Some(2)).is_none(), "the first image");
-        patience.finished();
+        assert!(patience.interrupt((1, Part::Image), || Some(2)).is_none(), "the first image");
+        patience.finished(false);
         patience.usual_secs = 3600.0;
-        // Whether an image of input 1 is given up while `waiting` waits.
-        let due = |patience: &mut Patience, is_sample: bool, waiting: Option<u64>| {
-            patience.interrupt((1, is_sample), move || waiting).is_some_and(|interrupt| interrupt.is_due())
-        };
-        assert!(!due(&mut patience, false, None), "nothing waits");
-        assert!(!due(&mut patience, false, Some(1)), "a frame of the same input waits");
-        assert!(due(&mut patience, true, Some(1)) && !due(&mut patience, true, None), "a sample");
-        assert!(due(&mut patience, false, Some(2)));
-        assert!(!due(&mut patience, false, Some(2)), "the one after it is finished");
-        patience.finished();
-        assert!(due(&mut patience, false, Some(3)), "and the next is not");
-        patience.finished();
+        assert!(!is_due(&mut patience, Part::Image, None), "nothing waits");
+        assert!(!is_due(&mut patience, Part::Image, Some(1)), "a frame of the same input waits");
+        assert!(is_due(&mut patience, Part::Sample, Some(1)), "a sample");
+        assert!(!is_due(&mut patience, Part::Sample, None));
+        assert!(is_due(&mut patience, Part::Image, Some(2)));
+        assert!(!is_due(&mut patience, Part::Image, Some(2)), "the one after it is finished");
+        patience.finished(false);
+        assert!(is_due(&mut patience, Part::Image, Some(3)), "and the next is not");
+        patience.finished(false);
         patience.usual_secs = 1e-9;
-        assert!(!due(&mut patience, false, Some(2)), "too late");
+        assert!(!is_due(&mut patience, Part::Image, Some(2)), "too late");
+        // What completes an image is given up at any time, and again and again.
+        for _ in 0..2 {
+            assert!(is_due(&mut patience, Part::Whole, Some(2)));
+        }
+        assert!(!is_due(&mut patience, Part::Whole, Some(1)) && !is_due(&mut patience, Part::Whole, None));
+    }
+
+    #[test]
+    fn slow_images_show_first_what_has_moved_but_not_for_long() {
+        let mut patience = Patience::default();
+        assert!(!patience.hurries(), "nothing is known yet");
+        patience.usual_secs = 0.9 * HURRIED_FROM_SECS;
+        assert!(!patience.hurries(), "quick images");
+        patience.usual_secs = 1.1 * HURRIED_FROM_SECS;
+        assert!(patience.hurries());
+        let usual = patience.usual_secs;
+        patience.finished(true);
+        assert!(patience.hurries() && patience.usual_secs == usual, "a part has no usual time");
+        patience.longest_late = Duration::ZERO;
+        assert!(!patience.hurries(), "too late");
+        patience.finished(false);
+        assert!(patience.hurries(), "after a whole image");
     }
 }

@@ -44,7 +44,8 @@ impl Rig {
         let wake = move || {
             let _ = sender.try_send(());
         };
-        let thread = RenderThread::start_with(Box::new(open), window, wake).expect("a thread");
+        let patience = Patience::default();
+        let thread = RenderThread::start_with(Box::new(open), window, patience, wake).expect("a thread");
         Self { thread, snapshot, finished, opened }
     }
 
@@ -317,4 +318,101 @@ fn input_that_never_stops_is_seen() {
         rig.finished.recv_timeout(HANG).expect("an end");
     }
     assert_eq!(rig.thread.error(), None, "an image that is given up is no failure");
+}
+
+#[test]
+fn what_a_brush_moves_is_shown_first_and_the_whole_image_after_it() {
+    let mut project = small_project();
+    (project.hair.groom.wisps, project.hair.groom.strands_per_wisp) = (100, 4);
+    project.picture.backend = Backend::Cpu;
+    let (scene, _) = SceneLoader::new().load_now(&project, &Access::new()).expect("a scene");
+    let rest = settled(scene, &project).snapshot();
+    let eye = rest.camera(&project.camera).eye;
+    // The guide nearest to the eye, moved away from the body.
+    let brushed = |metres: f32| {
+        let mut moved = (*rest).clone();
+        let guides = &mut moved.guides.guides;
+        let points = guides.points_per_guide;
+        let distance = |guide: &usize| guides.point(*guide, points / 2).distance(eye);
+        let nearest = (0..guides.count()).min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("guides");
+        let way = (eye - guides.point(nearest, points / 2)).normalize_or_zero() * metres;
+        for i in nearest * points + 1..(nearest + 1) * points {
+            guides.x[i] += way.x;
+            guides.y[i] += way.y;
+            guides.z[i] += way.z;
+        }
+        Arc::new(moved)
+    };
+    let size = [640, 480];
+    let project = Arc::new(project);
+    let request = |snapshot: &Arc<FrameSnapshot>, quality: ImageQuality, input: u64| RenderRequest {
+        project: Arc::clone(&project),
+        snapshot: Arc::clone(snapshot),
+        size,
+        quality,
+        measured: false,
+        mask: None,
+        input,
+    };
+    let anew = |snapshot: &FrameSnapshot, is_draft: bool| {
+        let camera = snapshot.camera(&project.camera);
+        let input = FrameInput { is_draft, ..snapshot.frame_input(&project, &camera) };
+        let mut picture = Picture::default();
+        let mut renderer = Renderer::open(Backend::Cpu).expect("the processor");
+        renderer.picture(&input, size[0], size[1], &mut picture).expect("an image");
+        picture
+    };
+
+    // A thread that stops after each image, and takes its time for no sign of a slow one.
+    let (send, finished) = sync_channel(64);
+    let (sender, stopped) = sync_channel::<()>(64);
+    let wake = move || {
+        let _ = send.try_send(());
+        let _ = stopped.recv();
+    };
+    let open = |choice: Backend, _: Option<&Arc<Gpu>>| Renderer::open(choice);
+    let patience = Patience::with_limits(0.0, HANG);
+    let thread =
+        RenderThread::start_with(Box::new(open), WindowDevice::default(), patience, wake).expect("a thread");
+    // It is dropped before the thread, which would wait for it.
+    let go = sender;
+    let next = || {
+        finished.recv_timeout(HANG).expect("an image");
+        let image = thread.images().latest().expect("an image");
+        (image.image.picture().expect("pixels"), image.stats.redrawn, image.cost.is_some())
+    };
+    let go_on = || go.send(()).expect("a thread that waits");
+    thread.request(request(&rest, ImageQuality::Draft, 0));
+    let (first, redrawn, _) = next();
+    assert!(redrawn.is_none() && *first == anew(&rest, true), "nothing is there to be drawn over");
+
+    let moved = brushed(0.02);
+    thread.request(request(&moved, ImageQuality::Draft, 1));
+    go_on();
+    let (part, redrawn, has_cost) = next();
+    let share = redrawn.expect("a part of the image");
+    let same = part.rgba.iter().zip(&first.rgba).filter(|(a, b)| a == b).count() as f32;
+    assert!(part != first && share < 0.5, "{share}");
+    assert!(same >= (1.0 - share) * part.rgba.len() as f32, "the rest is that of the image before");
+    assert!(!has_cost, "the window would take it for the cost of an image");
+    assert!(!thread.busy().load(Ordering::Relaxed), "nothing else is waited for");
+    go_on();
+    let (whole, redrawn, has_cost) = next();
+    assert!(redrawn.is_none() && has_cost && *whole == anew(&moved, true), "the rest follows by itself");
+
+    // The whole of an image is left out where the brush moves on.
+    let further = [brushed(0.03), brushed(0.04)];
+    for (input, snapshot) in (2..).zip(&further) {
+        thread.request(request(snapshot, ImageQuality::Draft, input));
+        go_on();
+        assert!(next().1.is_some(), "{input}");
+    }
+    go_on();
+    assert!(next().1.is_none());
+    // At rest nothing of all this is left.
+    thread.request(request(&further[1], ImageQuality::Full, 3));
+    go_on();
+    let (best, redrawn, _) = next();
+    assert!(redrawn.is_none() && *best == anew(&further[1], false));
+    go_on();
 }
