@@ -5,6 +5,10 @@ use std::sync::Arc;
 use lovelock_base::memory::list_bytes;
 use lovelock_groom::fine::{FineStrand, FineStrands, lock_numbers};
 use lovelock_groom::{COLOUR_SAMPLES, ColourSamples, Hairstyle, StrandColour, colour_along};
+use rayon::prelude::*;
+
+/// Strands per task at least.
+const STRANDS_PER_TASK: usize = 256;
 
 /// One packed word per point, and the list of segments. Rebuilt when the hairstyle changes.
 #[derive(Clone, Debug, Default)]
@@ -73,27 +77,28 @@ impl StrandDetails {
         let of_strand = |i: usize| (i * points) as u32..(i * points + points.saturating_sub(1)) as u32;
         let mut segments = Vec::with_capacity(count * points.saturating_sub(1));
         segments.extend((0..count).flat_map(of_strand));
-        self.words.reserve(count * points);
+        self.words.resize(count * points, 0);
         let locks = lock_numbers(&style.strands);
         if !set.colours.is_empty() {
             self.colour_of
                 .extend(fine.strands.iter().enumerate().map(|(i, strand)| colour_parent(i, strand)));
         }
-        for strand in &fine.strands {
+        let of_strands = self.words.par_chunks_mut(points.max(1)).zip(&fine.strands);
+        of_strands.with_min_len(STRANDS_PER_TASK).for_each(|(words, strand)| {
             let ends = set.first_point.get(strand.parents[0] as usize..).unwrap_or(&[]);
             let own = match ends {
                 [first, end, ..] => set.taper.get(*first as usize..*end as usize).unwrap_or(&[]),
                 _ => &[],
             };
-            for k in 0..points {
+            let shade = f32::from(strand.shade) / 255.0;
+            let lock = locks.get(strand.parents[0] as usize).copied().unwrap_or(0);
+            for (k, word) in words.iter_mut().enumerate() {
                 let along = k as f32 / last as f32;
                 let at = (along * own.len().saturating_sub(1) as f32).round() as usize;
                 let taper = own.get(at).copied().unwrap_or(1.0);
-                let shade = f32::from(strand.shade) / 255.0;
-                let lock = locks.get(strand.parents[0] as usize).copied().unwrap_or(0);
-                self.words.push(pack_detail(taper, along, shade, (k == 0, k == last), lock));
+                *word = pack_detail(taper, along, shade, (k == 0, k == last), lock);
             }
-        }
+        });
         self.fine = count;
         self.finish(style, before, segments);
         true
