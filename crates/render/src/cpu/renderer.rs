@@ -59,7 +59,7 @@ pub struct CpuRenderer {
     keeps: bool,
     /// Whether images may show only what has moved.
     hurries: bool,
-    /// What the finished tiles show, with the points of the placed hair; `None` if that is no whole image.
+    /// What the finished tiles show, whose strands have the points of the placed hair; `None` if nothing can be drawn over them.
     shown: Option<Shown>,
     moved: Moved,
     interrupt: Option<Interrupt>,

@@ -67,7 +67,7 @@ impl Combed {
     /// Moves the lock nearest to the camera, from where it rests.
     fn comb(&mut self, metres: f32) {
         let (rest, eye) = (&self.rest, self.scene.camera.eye);
-        let points = || (0..rest.points()).map(|i| rest.point(i));
+        let points = || (0..rest.points()).map(move |i| rest.point(i));
         let nearest = points().min_by(|a, b| a.distance(eye).total_cmp(&b.distance(eye))).expect("hair");
         let way = (nearest - self.scene.camera.target).with_y(0.5).normalize_or_zero() * metres;
         self.scene.strands = rest.clone();
