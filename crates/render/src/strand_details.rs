@@ -59,7 +59,7 @@ impl StrandDetails {
                 );
             }
         }
-        self.finish(style, before, segments);
+        self.finish(style, &before, segments);
         true
     }
 
@@ -100,7 +100,7 @@ impl StrandDetails {
             }
         });
         self.fine = count;
-        self.finish(style, before, segments);
+        self.finish(style, &before, segments);
         true
     }
 
@@ -110,8 +110,8 @@ impl StrandDetails {
     }
 
     /// Takes the style and the segments of the lists that were made anew, and compares all with what was `before`.
-    fn finish(&mut self, style: &Arc<Hairstyle>, before: [Vec<u32>; 2], segments: Vec<u32>) {
-        let [words, colour_of] = &before;
+    fn finish(&mut self, style: &Arc<Hairstyle>, before: &[Vec<u32>; 2], segments: Vec<u32>) {
+        let [words, colour_of] = before;
         let colours = self.style.as_ref().map(|style| &style.strands.colours);
         let same_colours = colours.is_some_and(|colours| *colours == style.strands.colours);
         let same_segments = *self.segments == segments;

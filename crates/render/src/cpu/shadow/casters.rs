@@ -45,7 +45,9 @@ impl Casters {
         let Strands { x, y, z, .. } = &mut self.strands;
         [(x, &strands.x), (y, &strands.y), (z, &strands.z)].into_par_iter().for_each(|(to, from)| {
             to.clear();
-            ranges.iter().for_each(|range| to.extend_from_slice(&from[range.clone()]));
+            for range in &ranges {
+                to.extend_from_slice(&from[range.clone()]);
+            }
         });
         if sum == 0 { 1.0 } else { points as f32 / sum as f32 }
     }
