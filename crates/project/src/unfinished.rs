@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use crate::date;
-use lovelock_record::{UnfinishedKind, claim, is_unfinished, tidy_finished, unfinished_outs};
+use lovelock_record::{UnfinishedKind, claim, has_older, is_unfinished, tidy_finished, unfinished_outs};
 use serde::{Deserialize, Serialize};
 
 use crate::Project;
@@ -98,6 +98,8 @@ pub struct Interrupted {
     path: PathBuf,
     /// The name that was recorded. A take has another one by now if that name was recorded again.
     noted: PathBuf,
+    /// Whether an older recording of that name has a note, too.
+    is_noted_twice: bool,
     /// What it needs.
     pub job: Job,
     /// Its kind.
@@ -107,9 +109,13 @@ pub struct Interrupted {
 impl Interrupted {
     /// Forgets it: it was kept, discarded or is recorded again.
     pub fn forget(&self) {
-        // Another part of a take may have no note but this one.
-        let is_other = |out: &PathBuf| *out != self.job.out;
-        if self.kind != UnfinishedKind::Take || !unfinished_outs(&self.noted).iter().any(is_other) {
+        // Another part of a take, or an older film, may have no note but this one.
+        let is_needed = match self.kind {
+            UnfinishedKind::Film => has_older(&self.job.out) && !self.is_noted_twice,
+            UnfinishedKind::Sequence => false,
+            UnfinishedKind::Take => unfinished_outs(&self.noted).iter().any(|out| *out != self.job.out),
+        };
+        if !is_needed {
             let _ = fs::remove_file(&self.path);
         }
     }
@@ -167,16 +173,21 @@ impl Recordings {
             }
             outs.retain(|out| found.iter().all(|other| other.job.out != *out));
             let Some(kind) = UnfinishedKind::of(&job.out).filter(|_| !outs.is_empty()) else {
-                let _ = fs::remove_file(path);
+                // An older film is offered when the newer one of its name is kept or discarded.
+                if !has_older(&job.out) {
+                    let _ = fs::remove_file(path);
+                }
                 continue;
             };
             // An older note of the same name is that of an older part; the oldest has all that are left.
-            if notes[k + 1..].iter().any(|(_, older, _)| older.out == job.out) {
+            let is_noted_twice = notes[k + 1..].iter().any(|(_, older, _)| older.out == job.out);
+            if is_noted_twice {
                 outs.truncate(1);
             }
             let of = |out| Interrupted {
                 path: path.clone(),
                 noted: job.out.clone(),
+                is_noted_twice,
                 job: Job { out, ..job.clone() },
                 kind,
             };
@@ -221,6 +232,49 @@ mod tests {
         assert!(recordings.interrupted().is_empty() && !tables.exists());
         assert_eq!(fs::read_dir(folder.path().join("state")).expect("a folder").count(), 0);
         assert!(recordings.begin(&Job::new(Path::new("a.apng"), &project, false)).is_none());
+    }
+
+    #[test]
+    fn an_older_film_is_offered_after_the_newer_one_of_its_name() {
+        for has_own_note in [true, false] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let recordings = Recordings::new(folder.path().join("state"));
+            let notes = || fs::read_dir(folder.path().join("state")).map_or(0, Iterator::count);
+            let film = folder.path().join("dance.mp4");
+            // As a crash does: the lock goes, the file stays.
+            let crash = |since_ms| {
+                let job = Job { since_ms, ..Job::new(&film, &Project::default(), false) };
+                let running = recordings.begin(&job).expect("noted");
+                let (path, text) = (running.path.clone(), fs::read(&running.path).expect("a note"));
+                drop(running);
+                fs::write(path, text).expect("a note");
+            };
+            let offered = || -> Vec<u64> {
+                recordings.interrupted().into_iter().map(|work| work.job.since_ms).collect()
+            };
+            if has_own_note {
+                crash(1);
+            }
+            crash(2);
+            for name in ["dance.mp4.partial", "dance.mp4.partial-before"] {
+                fs::write(folder.path().join(name), b"x").expect("a file");
+            }
+            assert_eq!((offered(), notes()), (vec![2], 1 + usize::from(has_own_note)));
+            let discard = || {
+                let found = recordings.interrupted();
+                lovelock_record::discard_unfinished(&found[0].job.out).expect("discarded");
+                found[0].forget();
+            };
+            discard();
+            assert_eq!((offered(), notes()), (vec![if has_own_note { 1 } else { 2 }], 1));
+            discard();
+            assert_eq!((offered(), notes()), (vec![], 0));
+            // Control: of two notes for one film the older one goes.
+            crash(3);
+            crash(4);
+            fs::write(folder.path().join("dance.mp4.partial"), b"x").expect("a file");
+            assert_eq!((offered(), notes()), (vec![4], 1));
+        }
     }
 
     #[test]

@@ -9,7 +9,22 @@ use std::path::Path;
 /// # Errors
 /// [`io::ErrorKind::ResourceBusy`] if another program holds the lock, or another part of this one.
 pub fn claim(path: &Path) -> io::Result<File> {
-    let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+    lock(OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?, path)
+}
+
+/// As [`claim`], but `None` if the file is missing.
+///
+/// # Errors
+/// As [`claim`].
+pub(crate) fn claim_existing(path: &Path) -> io::Result<Option<File>> {
+    match OpenOptions::new().read(true).write(true).open(path) {
+        Ok(file) => lock(file, path).map(Some),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+fn lock(file: File, path: &Path) -> io::Result<File> {
     let busy = || io::Error::new(io::ErrorKind::ResourceBusy, "another recording is writing to it");
     match file.try_lock() {
         // The other recording may have finished and renamed the file between `open` and `try_lock`.
@@ -52,6 +67,9 @@ mod tests {
         let again = claim(&path).unwrap();
         assert_eq!(again.metadata().unwrap().len(), 4);
         assert!(is_still(&again, &path));
+        assert_eq!(claim_existing(&path).unwrap_err().kind(), io::ErrorKind::ResourceBusy);
+        let missing = folder.path().join("missing");
+        assert!(claim_existing(&missing).unwrap().is_none() && !missing.exists());
         fs::rename(&path, folder.path().join("a")).unwrap();
         assert_eq!(is_still(&again, &path), !cfg!(unix));
     }

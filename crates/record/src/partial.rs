@@ -107,8 +107,13 @@ pub(crate) fn partial_path(target: &Path) -> PathBuf {
     target.with_file_name(name)
 }
 
-/// `target` if there is no such file, otherwise `NAME-1.EXTENSION` and so on.
+/// `target` if there is no such file, otherwise its [`numbered_name`].
 pub(crate) fn free_name(target: &Path) -> PathBuf {
+    if target.exists() { numbered_name(target) } else { target.to_owned() }
+}
+
+/// The first of `NAME-1.EXTENSION` and so on that neither exists nor is being written.
+pub(crate) fn numbered_name(target: &Path) -> PathBuf {
     let stem = target.file_stem().unwrap_or_default();
     let numbered = |number: u32| {
         let mut name = stem.to_owned();
@@ -119,11 +124,8 @@ pub(crate) fn free_name(target: &Path) -> PathBuf {
         });
         target.with_file_name(name)
     };
-    let free = |path: &PathBuf| !path.exists();
-    std::iter::once(target.to_owned())
-        .chain((1..u32::MAX).map(numbered))
-        .find(free)
-        .unwrap_or_else(|| target.to_owned())
+    let free = |path: &PathBuf| !path.exists() && !partial_path(path).exists();
+    (1..u32::MAX).map(numbered).find(free).unwrap_or_else(|| target.to_owned())
 }
 
 /// Creates the folder of `target` if it is missing.

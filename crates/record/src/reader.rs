@@ -30,8 +30,12 @@ pub struct FilmInfo {
 /// [`RecordError::Io`] if it cannot be read; [`RecordError::Malformed`] if it is not an MP4 file, or if its tables contradict
 /// each other or the file's length.
 pub fn read_film(path: &Path) -> Result<FilmInfo, RecordError> {
-    let mut file = open(path)?;
-    Ok(info(&parse(path, &mut file)?))
+    film_in(path, &mut open(path)?)
+}
+
+/// As [`read_film`], from a file that is open. Some systems let nobody else read a locked one.
+pub(crate) fn film_in(path: &Path, file: &mut File) -> Result<FilmInfo, RecordError> {
+    Ok(info(&parse(path, file)?))
 }
 
 fn open(path: &Path) -> Result<File, RecordError> {

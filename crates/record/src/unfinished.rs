@@ -65,6 +65,12 @@ pub fn is_unfinished(out: &Path) -> bool {
     }
 }
 
+/// Whether a film is set aside that was left of `out` before it was recorded again. If that was interrupted too, the one that is aside can be
+/// kept or discarded after the newer one, under the same name.
+pub fn has_older(out: &Path) -> bool {
+    UnfinishedKind::of(out) == Some(UnfinishedKind::Film) && tables::has_older(out)
+}
+
 /// The recordings that interrupted recordings to `out` left, the newest first, each to be kept or discarded by its name: `out` itself, and
 /// takes whose unfinished files were renamed when `out` was recorded again.
 pub fn unfinished_outs(out: &Path) -> Vec<PathBuf> {
@@ -112,7 +118,7 @@ pub fn keep_unfinished(out: &Path) -> Result<Option<Kept>, RecordError> {
     }
 }
 
-/// Removes what an interrupted recording to `out` left. Complete images of a sequence stay.
+/// Removes what an interrupted recording to `out` left. Complete images of a sequence stay, and so does an older film.
 ///
 /// # Errors
 /// If another program writes it, or it cannot be removed.
@@ -158,6 +164,8 @@ mod tests {
     };
 
     const SIDE: u32 = 32;
+    const FILM: FilmSettings =
+        FilmSettings { width: SIDE, height: SIDE, fps: 30.0, quality: FilmQuality::High };
 
     fn picture(frame: u32) -> Vec<u8> {
         (0..SIDE * SIDE).flat_map(|k| [(k % SIDE * 4) as u8, (frame * 9) as u8, 60, 255]).collect()
@@ -195,8 +203,7 @@ mod tests {
     fn the_images_of_an_interrupted_film_are_a_film() {
         let folder = tempfile::tempdir().unwrap();
         let film = folder.path().join("dance ü.mp4");
-        let settings = FilmSettings { width: SIDE, height: SIDE, fps: 30.0, quality: FilmQuality::High };
-        let mut writer = FilmWriter::create(&film, settings).unwrap();
+        let mut writer = FilmWriter::create(&film, FILM).unwrap();
         assert!(is_unfinished(&film));
         (0..20).for_each(|frame| writer.push(&picture(frame)).unwrap());
         wait_for(|| folder.path().join("dance ü.mp4.partial.tables").exists());
@@ -229,9 +236,8 @@ mod tests {
         for path in &files {
             fs::write(path, b"left by a crash").unwrap();
         }
-        let settings = FilmSettings { width: SIDE, height: SIDE, fps: 30.0, quality: FilmQuality::High };
         let record = || {
-            let mut writer = FilmWriter::create(&film, settings).unwrap();
+            let mut writer = FilmWriter::create(&film, FILM).unwrap();
             (0..3).for_each(|frame| writer.push(&picture(frame)).unwrap());
             writer
         };
@@ -248,6 +254,98 @@ mod tests {
         assert!(files.iter().all(|path| path.exists()));
         // Control: one that ends well replaces it.
         record().finish().unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    /// A folder with what a crash left of `dance.mp4`: 16 images and their tables.
+    fn cut_film() -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        let mut writer = FilmWriter::create(&folder.path().join("dance.mp4"), FILM).unwrap();
+        (0..20).for_each(|frame| writer.push(&picture(frame)).unwrap());
+        wait_for(|| folder.path().join("dance.mp4.partial.tables").exists());
+        left_of(folder.path())
+    }
+
+    /// The names of [`cut_film`] in a folder, and those of the same files when they are aside.
+    fn names_in(folder: &Path) -> [[PathBuf; 2]; 2] {
+        [
+            ["dance.mp4.partial", "dance.mp4.partial.tables"],
+            ["dance.mp4.partial-before", "dance.mp4.partial.tables-before"],
+        ]
+        .map(|names| names.map(|name| folder.join(name)))
+    }
+
+    fn contents(paths: &[PathBuf; 2]) -> [Vec<u8>; 2] {
+        paths.each_ref().map(|path| fs::read(path).unwrap())
+    }
+
+    #[test]
+    fn an_older_film_that_plays_outlives_newer_recordings_that_do_not() {
+        let folder = cut_film();
+        let film = folder.path().join("dance.mp4");
+        let [written, aside] = names_in(folder.path());
+        let older = contents(&written);
+        // The second recording was interrupted in its first second, before it had tables.
+        let interrupt_second = || {
+            for (path, aside) in written.iter().zip(&aside) {
+                fs::rename(path, aside).unwrap();
+            }
+            fs::write(&written[0], [7; 500]).unwrap();
+        };
+        interrupt_second();
+        assert!(has_older(&film));
+        let mut third = FilmWriter::create(&film, FILM).unwrap();
+        (0..3).for_each(|frame| third.push(&picture(frame)).unwrap());
+        assert_eq!(contents(&aside), older);
+        third.cancel();
+        assert_eq!(contents(&written), older);
+        assert!(!has_older(&film));
+        // Discarded, the second one does not take the first one along.
+        interrupt_second();
+        discard_unfinished(&film).unwrap();
+        assert!(!written[0].exists() && is_unfinished(&film) && has_older(&film));
+        assert_eq!(keep_unfinished(&film).unwrap().expect("a film").frames, 16);
+        // Control: nothing is left of either.
+        assert!(!is_unfinished(&film) && fs::read_dir(folder.path()).unwrap().count() == 1);
+    }
+
+    #[test]
+    fn of_two_interrupted_films_that_play_the_older_one_is_kept_when_a_third_begins() {
+        let folder = cut_film();
+        let film = folder.path().join("dance.mp4");
+        let [written, aside] = names_in(folder.path());
+        let newer = contents(&written);
+        for (path, aside) in written.iter().zip(&aside) {
+            fs::copy(path, aside).unwrap();
+        }
+        FilmWriter::create(&film, FILM).unwrap().cancel();
+        assert_eq!(contents(&written), newer);
+        let older = folder.path().join("dance-1.mp4");
+        assert_eq!((decoded(&older).len(), film.exists()), (16, false));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+        // Control: with one alone no film is made.
+        FilmWriter::create(&film, FILM).unwrap().cancel();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+        assert_eq!(keep_unfinished(&film).unwrap().expect("a film").path, film);
+    }
+
+    #[test]
+    fn a_film_that_cannot_be_set_aside_is_not_written_over() {
+        let folder = cut_film();
+        let film = folder.path().join("dance.mp4");
+        let [written, aside] = names_in(folder.path());
+        let left = contents(&written);
+        for blocked in &aside {
+            fs::create_dir(blocked).unwrap();
+            let error = FilmWriter::create(&film, FILM).unwrap_err();
+            assert!(error.to_string().contains("dance.mp4"), "{error}");
+            assert_eq!(contents(&written), left);
+            fs::remove_dir(blocked).unwrap();
+        }
+        // Control: where it can be, it is replaced.
+        let mut writer = FilmWriter::create(&film, FILM).unwrap();
+        writer.push(&picture(0)).unwrap();
+        writer.finish().unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 

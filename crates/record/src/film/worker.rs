@@ -49,7 +49,7 @@ impl Film {
             ticks_per_second,
             ticks_per_frame,
         };
-        let before = Before::set_aside(path);
+        let before = Before::set_aside(path)?;
         let writer = Mp4Writer::new(PartialFile::create(path, opener)?, track)?;
         let tables = TablesFile::new(path);
         Ok(Self { path: path.to_owned(), settings, rate, writer, tables, sound: None, frames: 0, before })
