@@ -77,6 +77,25 @@ pub fn read_strokes(path: &Path) -> Result<StrokeFile, ProjectError> {
     StrokeFile::from_text(&text).map_err(|error| ProjectError::input(path, format!("{name}: {error}")))
 }
 
+/// How many samples of the strokes were played. Reported between two steps, so that a long stroke can be cancelled.
+struct PlayProgress<'a> {
+    progress: &'a mut dyn FnMut(Progress) -> ControlFlow<()>,
+    done: u64,
+    total: u64,
+}
+
+impl PlayProgress<'_> {
+    fn report(&mut self) -> Result<(), ProjectError> {
+        let (done, total) = (self.done, self.total);
+        report_progress(self.progress, Progress::Simulating { done, total })
+    }
+
+    fn add(&mut self, samples: usize) -> Result<(), ProjectError> {
+        self.done += samples as u64;
+        self.report()
+    }
+}
+
 /// Plays strokes at their times and returns the project with what they did, in its last layer of edits by hand or in a new one.
 ///
 /// Strokes that follow each other within a few seconds are played on the same dance. Before any other stroke the hair is settled at the
@@ -115,23 +134,24 @@ pub fn play_strokes(
     let mut report = StrokesReport { strokes: file.strokes.len(), layer, ..StrokesReport::default() };
     let mut layers = BrushLayers::default();
     let mut frozen = Vec::new();
+    let total = strokes.iter().map(|stroke| stroke.samples.len() as u64).sum();
+    let mut played = PlayProgress { progress, done: 0, total };
     for (i, stroke) in strokes.iter().enumerate() {
-        report_progress(progress, Progress::Simulating { done: i as u64, total: file.strokes.len() as u64 })?;
         let Some(first) = stroke.samples.first() else {
             report.missed += 1;
             continue;
         };
-        reach(&mut engine, first.time_secs, i == 0, &mut |engine| see(engine, &project, None))?;
+        reach(&mut engine, first.time_secs, i == 0, &mut played, &mut |engine| see(engine, &project, None))?;
+        let stroke_on = (stroke, carried);
+        let show = &mut |engine: &mut Engine, brush| see(engine, &project, Some(brush));
         let (touched, stack) =
-            play(&mut engine, &mut layers, (stroke, carried), layer, &mut frozen, &mut |engine, brush| {
-                see(engine, &project, Some(brush))
-            })?;
+            play(&mut engine, &mut layers, stroke_on, layer, &mut frozen, &mut played, show)?;
         report.missed += usize::from(touched == 0 && stroke.tool != Tool::Freeze);
         project.hair.stack = stack.unwrap_or(project.hair.stack);
     }
     if watched {
         let end = engine.time_secs() + AFTER_SECS;
-        reach(&mut engine, end, false, &mut |engine| see(engine, &project, None))?;
+        reach(&mut engine, end, false, &mut played, &mut |engine| see(engine, &project, None))?;
     }
     report.places = project.hair.stack.hand(layer).map_or(0, HandEdits::count);
     Ok((project, report, problems))
@@ -173,17 +193,23 @@ fn reach(
     engine: &mut Engine,
     time_secs: f64,
     afresh: bool,
+    played: &mut PlayProgress<'_>,
     see: &mut dyn FnMut(&mut Engine) -> Result<(), ProjectError>,
 ) -> Result<(), ProjectError> {
     let step = (time_secs.max(0.0) / engine.step_secs()).round() as i64;
     let ahead = (step - engine.at_step()) as f64 * engine.step_secs();
     if afresh || !(0.0..=LONGEST_WAY_SECS).contains(&ahead) {
         engine.seek(time_secs);
-        engine.settle();
+        let mut preroll = engine.preroll();
+        while !preroll.advance() {
+            played.report()?;
+        }
+        engine.take_settled(preroll);
     }
     while engine.at_step() < step {
         engine.step();
         see(engine)?;
+        played.report()?;
     }
     Ok(())
 }
@@ -195,10 +221,12 @@ fn play(
     (stroke, head_from_rest): (&RecordedStroke, Option<&Affine3A>),
     layer: u32,
     frozen: &mut Vec<bool>,
+    played: &mut PlayProgress<'_>,
     see: &mut dyn FnMut(&mut Engine, PlayedBrush) -> Result<(), ProjectError>,
 ) -> Result<(usize, Option<StyleStack>), ProjectError> {
     let tool = (stroke.tool, stroke.inverted);
     let Some(mut brush) = engine.begin_stroke(layers, tool, &stroke.settings, layer, frozen) else {
+        played.add(stroke.samples.len())?;
         return Ok((0, None));
     };
     let mut touched = 0;
@@ -213,12 +241,13 @@ fn play(
             see(engine, PlayedBrush { position, radius })
         };
         let step = engine.at_step();
-        reach(engine, sample.time_secs, false, &mut show)?;
+        reach(engine, sample.time_secs, false, played, &mut show)?;
         if engine.at_step() == step {
             show(engine)?;
         }
         let sample = sample_at(engine);
         touched += engine.comb(&mut brush, &sample).len();
+        played.add(1)?;
     }
     engine.let_go(&mut brush, head_from_rest.is_none());
     *frozen = brush.frozen().to_vec();
@@ -294,6 +323,59 @@ mod tests {
             ControlFlow::Break(())
         });
         assert!(matches!(cancelled, Err(ProjectError::Cancelled)));
+    }
+
+    #[test]
+    fn a_long_stroke_is_cancelled_between_two_steps() {
+        let mut project = small_project();
+        project.timeline.preroll_secs = 0.25;
+        let sample = |time_secs: f64| StrokeSample {
+            position: Vec3::new(0.1, 0.06, 0.04),
+            view: Vec3::NEG_X,
+            pressure: 1.0,
+            time_secs,
+            ..StrokeSample::default()
+        };
+        let file_of = |times: &[f64]| {
+            let samples = times.iter().copied().map(sample).collect();
+            StrokeFile::new(vec![RecordedStroke { samples, ..RecordedStroke::default() }])
+        };
+        // Returns the steps and samples that were seen, and the last progress.
+        let play = |times: &[f64], goes_on: &dyn Fn(u64, u64) -> bool| {
+            let (mut seen, mut asked, mut last) = (0_u64, 0_u64, (0_u64, 0_u64));
+            let mut see = |_: &mut Engine, _: &Project, _: Option<PlayedBrush>| {
+                seen += 1;
+                Ok(())
+            };
+            let how = PlayStrokes { dance_from_secs: None, see: Some(&mut see) };
+            let mut follow = |progress: Progress| {
+                if let Progress::Simulating { done, total } = progress {
+                    (asked, last) = (asked + 1, (done, total));
+                    if !goes_on(done, asked) {
+                        return ControlFlow::Break(());
+                    }
+                }
+                ControlFlow::Continue(())
+            };
+            let played = play_strokes(&project, &Access::new(), &file_of(times), how, &mut follow);
+            let is_cancelled = matches!(played, Err(ProjectError::Cancelled));
+            assert!(is_cancelled || played.is_ok());
+            (is_cancelled, seen, last)
+        };
+        // While the hair settles before the stroke.
+        assert_eq!(play(&[0.5], &|_, asked| asked < 3), (true, 0, (0, 1)));
+        let many: Vec<f64> = (0..1000).map(|i| 0.5 + f64::from(i) / 60.0).collect();
+        let (is_cancelled, seen, last) = play(&many, &|done, _| done < 3);
+        assert_eq!((is_cancelled, last), (true, (3, 1000)));
+        assert!(seen < 20, "{seen} steps");
+        // On the long way to a sample, after at most thirty steps of settling.
+        let (is_cancelled, seen, last) = play(&[0.5, 9.5], &|_, asked| asked < 100);
+        assert_eq!((is_cancelled, last), (true, (1, 2)));
+        assert!((60..100).contains(&seen), "{seen} steps");
+        // Control: nobody cancels.
+        let (is_cancelled, seen, last) = play(&many[..5], &|_, _| true);
+        assert_eq!((is_cancelled, last), (false, (5, 5)));
+        assert!(seen >= 5, "{seen} steps");
     }
 
     #[test]
