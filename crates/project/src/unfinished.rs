@@ -3,7 +3,7 @@
 //! Each has a file in a folder of the user, which is locked while the recording runs and removed at its end.
 
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -158,11 +158,14 @@ impl Recordings {
         for path in paths.into_iter().take(MOST) {
             // One that runs is locked.
             let Ok(lock) = claim(&path) else { continue };
-            let is_short = fs::metadata(&path).is_ok_and(|data| data.len() <= LONGEST);
-            let text = is_short.then(|| fs::read(&path).ok()).flatten();
-            match text.and_then(|text| serde_json::from_slice(&text).ok()) {
-                Some(job) => notes.push((path, job, lock)),
-                None => drop(fs::remove_file(&path)),
+            // Through the lock, because some systems let no other handle read a locked file.
+            let mut text = Vec::new();
+            if (&lock).take(LONGEST).read_to_end(&mut text).is_err() {
+                continue;
+            }
+            match serde_json::from_slice(&text) {
+                Ok(job) => notes.push((path, job, lock)),
+                Err(_) => drop(fs::remove_file(&path)),
             }
         }
         let mut found: Vec<Interrupted> = Vec::new();
@@ -232,6 +235,25 @@ mod tests {
         assert!(recordings.interrupted().is_empty() && !tables.exists());
         assert_eq!(fs::read_dir(folder.path().join("state")).expect("a folder").count(), 0);
         assert!(recordings.begin(&Job::new(Path::new("a.apng"), &project, false)).is_none());
+    }
+
+    /// The memory of this process stands for a note that cannot be read: it can be opened and locked, and nothing is at its start.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_note_that_cannot_be_read_stays_and_one_that_is_no_note_goes() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let recordings = Recordings::new(folder.path());
+        let [unread, damaged] = ["2.json", "1.json"].map(|name| folder.path().join(name));
+        std::os::unix::fs::symlink("/proc/self/mem", &unread).expect("a link");
+        fs::write(&damaged, b"{").expect("a file");
+        assert!(recordings.interrupted().is_empty());
+        assert!(unread.is_symlink() && !damaged.exists());
+        // Control: a link is read as any other note.
+        let job = Job::new(&folder.path().join("dance.mp4"), &Project::default(), false);
+        fs::write(folder.path().join("dance.mp4.partial"), b"x").expect("a file");
+        fs::write(folder.path().join("note"), serde_json::to_vec(&job).expect("text")).expect("a file");
+        std::os::unix::fs::symlink(folder.path().join("note"), &damaged).expect("a link");
+        assert_eq!(recordings.interrupted().len(), 1);
     }
 
     #[test]
