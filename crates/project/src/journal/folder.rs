@@ -10,7 +10,7 @@ use lovelock_record::claim;
 
 use super::note;
 use super::owner::Owner;
-use super::reader::Contents;
+use super::reader::{Contents, owner_in};
 use crate::error::ProjectError;
 use crate::files::canonical;
 use crate::history::History;
@@ -117,10 +117,8 @@ impl Journals {
         let (mut file, stays) = match open_dead(journal) {
             Ok(opened) => opened,
             Err(error) if error.kind() == io::ErrorKind::ResourceBusy => {
-                let owner = File::open(journal).and_then(|mut file| Contents::read(&mut file));
-                return Ok(Aside::Busy(
-                    owner.ok().flatten().map(|contents| contents.owner).unwrap_or_default(),
-                ));
+                let owner = File::open(journal).and_then(owner_in);
+                return Ok(Aside::Busy(owner.ok().flatten().unwrap_or_default()));
             }
             Err(error) => return Err(error),
         };

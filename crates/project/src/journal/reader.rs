@@ -17,6 +17,21 @@ use crate::project::project_in_memory;
 /// The longest journal that is read, bytes.
 const LONGEST: u64 = 512 << 20;
 
+/// The longest record of an owner that is read, bytes.
+const LONGEST_OWNER: u64 = 4096;
+
+/// Who writes a journal: its first record. `None` if it is no journal.
+///
+/// # Errors
+/// If it cannot be read.
+pub(super) fn owner_in(journal: impl Read) -> io::Result<Option<Owner>> {
+    let mut bytes = Vec::new();
+    journal.take(LONGEST_OWNER).read_to_end(&mut bytes)?;
+    let first = Records::of(&bytes).and_then(|mut records| records.next());
+    let owner = first.filter(|(kind, _)| *kind == Kind::Owner);
+    Ok(owner.and_then(|(_, contents)| serde_json::from_slice(contents).ok()))
+}
+
 /// What a journal holds.
 pub(super) struct Contents {
     bytes: Vec<u8>,

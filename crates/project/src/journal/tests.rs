@@ -204,6 +204,65 @@ fn both_programs_on_a_project_are_told_once_and_leave_nothing() {
 }
 
 #[test]
+fn a_program_that_opens_the_project_after_the_first_one_has_ended_meets_the_second() {
+    // In either order: the second program has noticed by then that the first one has ended, or not.
+    for notices in [true, false] {
+        let place = Place::new();
+        let (first, mut journal) = place.open();
+        assert!(journal.flush(&first, WITHIN));
+        let (mut second, mut other) = open_second(&place);
+        distance(&mut second, 3.5);
+        assert!(other.flush(&second, WITHIN));
+        assert!(matches!(&other.events()[..], [Event::OpenElsewhere(_)]));
+        journal.close();
+        if notices {
+            assert!(other.flush(&second, WITHIN) && beside(&place.project()).exists());
+            assert!(!place.files("state/journals").iter().any(|name| name.ends_with(".journal")));
+        }
+        assert!(other.events().is_empty(), "control: it is alone");
+        let (mut third, mut journal) = open_second(&place);
+        for _ in 0..2 {
+            assert!(journal.flush(&third, WITHIN) && other.flush(&second, WITHIN));
+        }
+        for told in [journal.events(), other.events()] {
+            assert!(matches!(&told[..], [Event::OpenElsewhere(_)]), "{told:?}");
+        }
+        distance(&mut third, 4.5);
+        assert!(journal.flush(&third, WITHIN) && other.flush(&second, WITHIN));
+        assert!(journal.events().is_empty() && other.events().is_empty(), "once");
+        drop((journal, other));
+        let found = place.journals().unsaved(Some(&place.project()));
+        let mut found: Vec<f32> = found
+            .iter()
+            .map(|unsaved| unsaved.history().expect("a history").project().camera.distance)
+            .collect();
+        found.sort_by(f32::total_cmp);
+        assert_eq!(found, [3.5, 4.5]);
+    }
+}
+
+#[test]
+fn changes_of_a_first_program_that_crashed_are_announced_to_the_second() {
+    let place = Place::new();
+    let (mut first, mut journal) = place.open();
+    assert!(journal.flush(&first, WITHIN));
+    let (mut second, mut other) = open_second(&place);
+    distance(&mut second, 3.5);
+    assert!(other.flush(&second, WITHIN));
+    assert_eq!(other.events().len(), 1);
+    distance(&mut first, 2.5);
+    crash(&first, journal);
+    assert!(other.flush(&second, WITHIN));
+    assert_eq!(other.events(), [Event::Found]);
+    let found = place.journals().unsaved(Some(&place.project()));
+    assert_eq!(found.len(), 1, "that of the second is not left");
+    assert_eq!(found[0].history().expect("a history").project().camera.distance, 2.5);
+    // Control: that of the second one took the place, and is found when it crashes, too.
+    crash(&second, other);
+    assert_eq!(place.journals().unsaved(Some(&place.project())).len(), 2);
+}
+
+#[test]
 fn a_second_program_on_the_same_project_is_noticed_and_keeps_its_own_journal() {
     let place = Place::new();
     let (mut first, mut journal) = place.open();

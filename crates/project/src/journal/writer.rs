@@ -119,8 +119,8 @@ pub(super) struct Writer {
     unsynced: Option<Stopwatch>,
     /// Why the last attempt failed.
     trouble: Option<Event>,
-    /// The journal of another program that had the project open first. That program has a note.
-    met: Option<PathBuf>,
+    /// The journal of a program that had the project open first. That program has a note.
+    met: Option<(PathBuf, Owner)>,
     /// The program that has opened the project after this one.
     joined: Option<Owner>,
     looked: Stopwatch,
@@ -209,11 +209,55 @@ impl Writer {
     /// Tells if another program has opened the project, once for each.
     fn look(&mut self) {
         self.looked = Stopwatch::start();
+        // Two programs that take a place at the same moment both write there, and one of the files is lost.
+        if self.project_slot().is_some_and(|slot| !is_still(&slot.file, &slot.path)) {
+            self.write();
+        }
         let joined = self.project_slot().and_then(|slot| note::take(&slot.path));
         if let Some(owner) = joined.filter(|owner| self.joined.as_ref() != Some(owner)) {
             self.joined = Some(owner.clone());
             self.tell(Event::OpenElsewhere(owner));
         }
+        self.follow_first();
+    }
+
+    /// Follows the program that had the project open first. When it has ended, its place is taken: a program that opens the project next is
+    /// noticed there. If another one has taken it already, both are told.
+    fn follow_first(&mut self) {
+        let Some((place, first)) = self.met.clone() else { return };
+        let Some(slot) = self.project_slot() else { return };
+        if slot.path == place {
+            self.met = None;
+            return;
+        }
+        // What cannot be set aside now is tried again at the next look.
+        let Ok(aside) = self.journals.set_aside_dead(&place) else { return };
+        match aside {
+            Aside::Busy(owner) => {
+                if owner != first && owner != self.owner {
+                    self.meet(&place, owner);
+                }
+                return;
+            }
+            Aside::Moved => self.tell(Event::Found),
+            Aside::Nothing => {}
+        }
+        let Some(marked) = self.marked.clone() else { return };
+        if let Ok(slot) = self.begin(place, &marked) {
+            self.met = None;
+            if let Some(before) = self.slot.replace(slot) {
+                // All of it is in the new one.
+                let _ = fs::remove_file(&before.path);
+                note::forget(&before.path);
+            }
+        }
+    }
+
+    /// Tells this program and the one that writes the journal at `place` of each other.
+    fn meet(&mut self, place: &Path, owner: Owner) {
+        note::leave(place, &self.owner);
+        self.met = Some((place.to_owned(), owner.clone()));
+        self.tell(Event::OpenElsewhere(owner));
     }
 
     fn tell(&self, event: Event) {
@@ -315,10 +359,10 @@ impl Writer {
                 Ok(Aside::Busy(_)) if is_own => self.begin(place.clone(), marked),
                 Ok(Aside::Busy(owner)) => {
                     // Not again when it tries again after a failure.
-                    if !is_busy && owner != self.owner && self.met.as_ref() != Some(&place) {
-                        note::leave(&place, &self.owner);
-                        self.met = Some(place.clone());
-                        self.tell(Event::OpenElsewhere(owner));
+                    let is_met =
+                        self.met.as_ref().is_some_and(|(met, first)| *met == place && *first == owner);
+                    if !is_busy && !is_met && owner != self.owner {
+                        self.meet(&place, owner);
                     }
                     is_busy = true;
                     places = second.clone().into_iter().filter(|second| *second != place).collect();
