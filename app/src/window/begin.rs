@@ -95,8 +95,8 @@ pub(super) struct Opened {
     pub(super) refused: Option<String>,
 }
 
-/// As [`open_for_start`]. A file that cannot be opened is told in the window, with a new project: nobody reads what a program prints that a
-/// desktop has started. The error is for the case that no window opens.
+/// As [`open_for_start`]. A file that cannot be opened is told in the window, with a new project in which the settings are changed: nobody
+/// reads what a program prints that a desktop has started. The error is for the case that no window opens.
 fn open_or_refuse(
     path: Option<&Path>,
     set: &[Assignment],
@@ -107,23 +107,26 @@ fn open_or_refuse(
         // Desktops give no options.
         Err(error) if at_once || matches!(error, ProjectError::Request { file: None, .. }) => Err(error),
         Err(error) => {
-            let refused = Some(error.to_string());
-            Ok((Opened { refused, ..Opened::default() }, Some(error)))
+            let (project, refused) = (new_project(set)?, Some(error.to_string()));
+            Ok((Opened { project, refused, ..Opened::default() }, Some(error)))
         }
     }
+}
+
+/// The default project with other settings.
+fn new_project(set: &[Assignment]) -> Result<Project, ProjectError> {
+    let mut project = Project::default();
+    project.assign(set)?;
+    Ok(project)
 }
 
 /// Opens the file that is named on the command line, or the default project, and changes settings of it. Strokes are played `at_once`, or once
 /// the window is there.
 fn open_for_start(path: Option<&Path>, set: &[Assignment], at_once: bool) -> Result<Opened, ProjectError> {
-    let new = || {
-        let mut project = Project::default();
-        project.assign(set).map(|()| project)
-    };
-    let Some(path) = path else { return Ok(Opened { project: new()?, ..Opened::default() }) };
+    let Some(path) = path else { return Ok(Opened { project: new_project(set)?, ..Opened::default() }) };
     // The ending first: to find the kind, large files are read as a whole.
     if FileKind::by_extension(path) == Some(FileKind::Strokes) && FileKind::of(path)? == FileKind::Strokes {
-        let mut opened = Opened { project: new()?, ..Opened::default() };
+        let mut opened = Opened { project: new_project(set)?, ..Opened::default() };
         if at_once {
             let played = Played::of(path, &opened.project, &Watch::default())?;
             (opened.project, opened.problems) = (played.project, played.problems);
@@ -134,7 +137,8 @@ fn open_for_start(path: Option<&Path>, set: &[Assignment], at_once: bool) -> Res
     }
     let (mut opened, place) = open_file(path)?;
     opened.project.assign(set)?;
-    opened.part = place.map(|place| new().map(|before| (place, path.to_owned(), before))).transpose()?;
+    opened.part =
+        place.map(|place| new_project(set).map(|before| (place, path.to_owned(), before))).transpose()?;
     Ok(opened)
 }
 
@@ -200,13 +204,18 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let (gone, broken) = (folder.path().join("gone.lovelock"), folder.path().join("broken.take"));
         std::fs::write(&broken, b"no take").expect("a file");
-        let wrong = [Assignment { name: "sparkle".to_owned(), value: "1".to_owned() }];
+        let assign =
+            |name: &str, value: &str| [Assignment { name: name.to_owned(), value: value.to_owned() }];
+        let (wrong, right) = (assign("sparkle", "1"), assign("hair.groom.wisps", "16"));
         for (path, name) in [(&gone, "gone.lovelock"), (&broken, "broken.take")] {
-            let (opened, error) = open_or_refuse(Some(path), &[], false).expect("a new project");
-            assert_eq!(opened.project, Project::default());
+            let (opened, error) = open_or_refuse(Some(path), &right, false).expect("a new project");
+            assert_eq!(opened.project, new_project(&right).expect("a project"));
+            assert_eq!(opened.project.hair.groom.wisps, 16);
             let said = error.expect("an error").to_string();
             assert!(said.contains(name) && opened.refused.as_ref() == Some(&said), "{said}");
             assert!(open_or_refuse(Some(path), &[], true).is_err(), "a picture of it is waited for");
+            let told = open_or_refuse(Some(path), &wrong, false).expect_err("a wrong option").to_string();
+            assert!(told.contains("sparkle"), "{told}");
         }
         // Controls: a wrong option, and a file that can be opened.
         assert!(open_or_refuse(None, &wrong, false).is_err());
