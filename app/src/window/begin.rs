@@ -142,11 +142,11 @@ fn open_for_start(path: Option<&Path>, set: &[Assignment], at_once: bool) -> Res
     Ok(opened)
 }
 
-/// Opens a file; also returns the part of the project that it becomes, if it is one.
+/// Opens a file that holds no strokes; also returns the part of the project that it becomes, if it is one.
 fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
     let mut place = None;
     let mut opened = Opened { picked: vec![path.to_owned()], ..Opened::default() };
-    match Found::of(path, &opened.project.hair, Some(&opened.project), &Watch::default())? {
+    match Found::of(path, &opened.project.hair, None, &Watch::default())? {
         Found::Curves(curves) => opened.project = curves.played_in(&opened.project),
         Found::Part(kind, unused) => {
             let unused = unused.map(|why| Problem::new(Place::Hair, ProblemKind::Ignored, why));
@@ -159,6 +159,10 @@ fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
             opened.picked.extend(listed.style.hair.file.as_ref().map(|file| file.path.clone()));
             opened.project.apply_style(&listed.style, StyleParts::ALL);
         }
+        Found::Document(FileKind::Strokes) | Found::Strokes(_) => {
+            let message = format!("{}: found strokes; must be a project or a part of one", path.display());
+            return Err(ProjectError::input(path, message));
+        }
         Found::Document(_) => {
             let mut access = Access::for_project(path);
             Grants::of_user().allow(path, &mut access);
@@ -167,9 +171,6 @@ fn open_file(path: &Path) -> Result<(Opened, Option<Place>), ProjectError> {
             opened.project_path = Some(std::path::absolute(path).unwrap_or_else(|_| path.to_owned()));
         }
         Found::Take(project, problems) => (opened.project, opened.problems) = (*project, problems),
-        Found::Strokes(played) => {
-            (opened.project, opened.problems) = (played.project.clone(), played.problems.clone());
-        }
     }
     Ok((opened, place))
 }
@@ -193,6 +194,9 @@ mod tests {
         assert!(played.strokes.is_none() && played.project_path.is_none() && played.picked.is_empty());
         assert_eq!(played.project.hair.stack.layers.len(), wanted.hair.stack.layers.len() + 1);
         assert_eq!(played.project.hair.groom.wisps, 16);
+        // Control: they are not read as a project.
+        let refused = open_file(&path).expect_err("strokes").to_string();
+        assert!(refused.contains("combed ü.lovelockstrokes: found strokes"), "{refused}");
         for at_once in [false, true] {
             let gone = open_for_start(Some(&folder.path().join("gone.lovelockstrokes")), &[], at_once);
             assert!(gone.is_err_and(|error| error.to_string().contains("gone.lovelockstrokes")));
