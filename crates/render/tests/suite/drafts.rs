@@ -131,11 +131,12 @@ fn what_moves_is_drawn_first_and_the_rest_after_it() {
 
 #[test]
 fn an_image_in_which_more_than_hair_has_changed_is_drawn_whole() {
+    type Change = (&'static str, fn(&mut Scene));
     let mut hair = Combed::new();
     let mut renderer = CpuRenderer::default();
     renderer.set_hurrying(true);
     drawn(&mut renderer, &hair.scene, true);
-    let changes: [(&str, fn(&mut Scene)); 8] = [
+    let changes: [Change; 8] = [
         ("the camera", |scene| scene.camera.eye.x += 0.01),
         ("exposure", |scene| scene.picture.exposure_stops += 0.2),
         ("colour", |scene| scene.look.roughness += 0.1),

@@ -367,11 +367,10 @@ fn moments_that_no_distribution_has_are_counted() {
         {
             let (usual, unbiased) = (counted(case, 1.0), counted(case, 0.0));
             println!("{case:?}: {usual:?} with the bias, {unbiased:?} without");
-            // Without the bias, texels with few hairs have no room for rounding.
-            assert!(
-                usual.0 <= usual.1 / 100 && unbiased.0 > unbiased.1 / 20,
-                "{case:?}: {usual:?}, {unbiased:?}"
-            );
+            // Without the bias, texels with few hairs have no room for rounding; trigonometric means are rounded more rarely to such that no
+            // hair has.
+            let least = if kind == MomentKind::Power { unbiased.1 / 20 } else { 20 };
+            assert!(usual.0 <= usual.1 / 500 && unbiased.0 > least, "{case:?}: {usual:?}, {unbiased:?}");
         }
     }
 }
