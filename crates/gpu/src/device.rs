@@ -54,7 +54,11 @@ pub struct Gpu {
     pub(crate) counters: Counters,
     constants: Mutex<ConstantPool>,
     frame: AtomicU64,
+    number: u64,
 }
+
+/// The number of handles so far.
+static HANDLES: AtomicU64 = AtomicU64::new(0);
 
 /// The errors of a device that have not been reported.
 #[derive(Debug, Default)]
@@ -149,6 +153,7 @@ impl Gpu {
             counters: Counters::default(),
             constants: Mutex::default(),
             frame: AtomicU64::new(0),
+            number: HANDLES.fetch_add(1, Ordering::Relaxed),
         })
     }
 
@@ -163,7 +168,13 @@ impl Gpu {
             counters: Counters::default(),
             constants: Mutex::default(),
             frame: AtomicU64::new(0),
+            number: HANDLES.fetch_add(1, Ordering::Relaxed),
         })
+    }
+
+    /// The number of this handle, which no other one has, of whatever device.
+    pub fn number(&self) -> u64 {
+        self.number
     }
 
     /// Whether both are handles of one device.

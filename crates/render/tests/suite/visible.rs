@@ -98,16 +98,17 @@ fn every_way_of_drawing_hair_looks_as_with_light_at_every_point() {
         assert_eq!(lit < points, transparency == Transparency::Sorted, "{transparency}");
     }
     scene.picture.transparency = Transparency::Sorted;
-    for shading in [HairShading::Fibre, HairShading::TwoHighlights, HairShading::KajiyaKayPublished] {
+    for (shading, strands) in [
+        (HairShading::Fibre, StrandCount::Stored),
+        (HairShading::TwoHighlights, StrandCount::BySize),
+        (HairShading::KajiyaKayPublished, StrandCount::Fixed),
+    ] {
         scene.look.shading = shading;
-        for strands in [StrandCount::Stored, StrandCount::Fixed, StrandCount::BySize] {
-            scene.picture.strands = strands;
-            compared(&format!("{shading:?}, {strands:?}"), &scene.input());
-        }
-        scene.picture.strands = StrandCount::Fixed;
-        let draft = FrameInput { is_draft: true, ..scene.input() };
-        compared(&format!("{shading:?}, a draft"), &draft);
+        scene.picture.strands = strands;
+        compared(&format!("{shading:?}, {strands:?}"), &scene.input());
     }
+    let draft = FrameInput { is_draft: true, ..scene.input() };
+    compared("a draft", &draft);
     compared("before a wall", &soft_wig().input());
 }
 

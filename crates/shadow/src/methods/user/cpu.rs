@@ -18,7 +18,7 @@ use crate::{
 /// The device of all users' methods that do not run on a renderer's.
 static DEVICE: Mutex<Option<Arc<Gpu>>> = Mutex::new(None);
 
-/// A handle of the device, opened if it is not there or was lost.
+/// The device, opened if it is not there or was lost. All maps have one handle, so that they share kernels.
 fn device() -> Result<Arc<Gpu>, GpuError> {
     let mut device = DEVICE.lock().unwrap_or_else(PoisonError::into_inner);
     device.take_if(|gpu| gpu.is_lost());
@@ -26,7 +26,7 @@ fn device() -> Result<Arc<Gpu>, GpuError> {
         Some(gpu) => gpu,
         none => none.insert(Gpu::open_software().or_else(|_| Gpu::open())?),
     };
-    Ok(gpu.handle())
+    Ok(Arc::clone(gpu))
 }
 
 /// The map of a light.

@@ -27,10 +27,11 @@ pub(super) struct UserShadow {
     maps: Vec<Map>,
 }
 
-/// The kernels of one version and one filter on one device.
+/// The kernels of one version and one filter. They keep bind groups by the frames of a handle of a device.
 #[derive(Debug)]
 struct Kernels {
-    device: wgpu::Device,
+    /// The number of the handle.
+    handle: u64,
     projected: bool,
     definition: &'static Definition,
     filter: TexelFilter,
@@ -92,7 +93,7 @@ impl Kernels {
         };
         let passes = definition.passes.iter().map(pass).collect::<Result<_, _>>()?;
         let lookup = PointLookup::new(gpu, &definition.query, true, &constants)?;
-        Ok(Self { device: gpu.device.clone(), projected, definition, filter, passes, lookup })
+        Ok(Self { handle: gpu.number(), projected, definition, filter, passes, lookup })
     }
 
     /// Those in use, or new ones.
@@ -108,7 +109,7 @@ impl Kernels {
         let found = in_use.iter().filter_map(Weak::upgrade).find(|kernels| {
             std::ptr::eq(kernels.definition, definition)
                 && (kernels.filter, kernels.projected) == (filter, projected)
-                && kernels.device == gpu.device
+                && kernels.handle == gpu.number()
         });
         if let Some(kernels) = found {
             return Ok(kernels);
