@@ -19,7 +19,7 @@ pub type Moments = TexelMap<DepthMoments>;
 const PUBLISHED_BIAS: [[[f32; 3]; 2]; 2] =
     [[[6e-5, 6e-4, 2.5e-3], [5e-7, 2e-5, 5e-5]], [[4e-4, 6.5e-4, 8.5e-4], [4e-7, 8e-7, 1.5e-6]]];
 
-/// A record is a depth range, the optical depth of all hair, and the means of [`each_function`], in a cell each or two in one: the bits of
+/// A record is a depth range, the optical depth of all hair, and the means of the functions of means.rs, in a cell each or two in one: the bits of
 /// floats, or integers of 16 bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthMoments {
