@@ -53,9 +53,9 @@ pub use lovelock_shadow::voxel_map::{MapExtent, VoxelDeposit, VoxelFilter, Voxel
 pub use lovelock_shadow::{
     AdaptiveSettings, ApproximateDeepSettings, ClusterDeviation, ClusterSeeds, DeepOpacityMapsSettings,
     DeepShadowMapsSettings, DensityClusteringSettings, DepthRange, ExactSettings, FourierSettings,
-    LayerGrowth, MomentKind, MomentsSettings, OccupancyMapsSettings, OpacityMapsSettings, RayMark,
-    RayMarkKind, RayStructure, RayTracedSettings, ShadowError, ShadowMethod, ShadowSettings,
-    TEXEL_RESOLUTIONS, TexelFilter, UserMethod, VoxelMarchSettings, fallbacks_sentence, new_method,
+    LayerGrowth, MomentsSettings, OccupancyMapsSettings, OpacityMapsSettings, RayMark, RayMarkKind,
+    RayStructure, RayTracedSettings, ShadowError, ShadowMethod, ShadowSettings, TEXEL_RESOLUTIONS,
+    TexelFilter, UserMethod, VoxelMarchSettings, fallbacks_sentence, new_method,
 };
 pub use picture::Picture;
 pub use renderer::Renderer;

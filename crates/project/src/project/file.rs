@@ -17,7 +17,7 @@ use crate::files::{Access, FileRef, folder_of, write_whole};
 pub const PROJECT_EXTENSION: &str = "lovelock";
 
 /// Largest size of a project file. A project is a few kilobytes of text, and up to a few megabytes with much hair that was brushed.
-const LARGEST_BYTES: u64 = 64 << 20;
+pub(crate) const LARGEST_BYTES: u64 = 64 << 20;
 
 /// The deepest nesting that is read. Projects use four levels.
 const DEEPEST: usize = 32;
@@ -40,7 +40,7 @@ pub fn load_project(path: &Path) -> Result<(Project, Vec<Problem>), ProjectError
 /// # Errors
 /// As [`load_project`].
 pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, Vec<Problem>), ProjectError> {
-    let text = read_text(path, "project")?;
+    let text = read_text(path, "project", LARGEST_BYTES)?;
     let (project, mut problems) = project_of_text(path, &text)?;
     access.set_project(Some(path));
     for (place, file) in project.files() {
@@ -55,11 +55,11 @@ pub fn load_project_with(path: &Path, access: &mut Access) -> Result<(Project, V
     Ok((project, problems))
 }
 
-/// The text of a file that should be a `what`, such as a project.
+/// The text of a file that should be a `what`, such as a project, of at most `largest` bytes.
 ///
 /// # Errors
-/// A file that cannot be read, is a folder, is larger than a project can be, or is not text.
-pub(crate) fn read_text(path: &Path, what: &str) -> Result<String, ProjectError> {
+/// A file that cannot be read, is a folder, is larger than that, or is not text.
+pub fn read_text(path: &Path, what: &str, largest: u64) -> Result<String, ProjectError> {
     let name = path.display();
     let cannot_read =
         |error: std::io::Error| ProjectError::input(path, format!("{name}: cannot be read: {error}"));
@@ -69,9 +69,9 @@ pub(crate) fn read_text(path: &Path, what: &str) -> Result<String, ProjectError>
         return Err(ProjectError::input(path, format!("{name}: is a folder; must be a {what} file")));
     }
     let mut bytes = Vec::new();
-    file.take(LARGEST_BYTES + 1).read_to_end(&mut bytes).map_err(cannot_read)?;
-    if bytes.len() as u64 > LARGEST_BYTES {
-        let message = format!("{name}: larger than {LARGEST_BYTES} bytes, the largest size of a {what}");
+    file.take(largest.saturating_add(1)).read_to_end(&mut bytes).map_err(cannot_read)?;
+    if bytes.len() as u64 > largest {
+        let message = format!("{name}: larger than {largest} bytes, the largest size of a {what}");
         return Err(ProjectError::input(path, message));
     }
     String::from_utf8(bytes).map_err(|error| {

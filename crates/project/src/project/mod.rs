@@ -23,11 +23,11 @@ mod version_2;
 
 pub use brows::{BrowColour, BrowSection};
 pub use contender::{Contender, backend_label};
+pub(crate) use file::{LARGEST_BYTES, parse_text, project_in_memory, text_in_memory, text_options};
 pub use file::{
-    PROJECT_EXTENSION, load_project, load_project_with, parse_project, project_of_text, save_project,
-    text_of_project,
+    PROJECT_EXTENSION, load_project, load_project_with, parse_project, project_of_text, read_text,
+    save_project, text_of_project,
 };
-pub(crate) use file::{parse_text, project_in_memory, read_text, text_in_memory, text_options};
 pub use lens::{FocusOn, LensSettings};
 pub use sections::{
     BodySection, BodySource, CameraMode, CameraSection, CompareSection, HairMorph, HairSection, HairSource,

@@ -10,7 +10,7 @@ use super::motion;
 use crate::Project;
 use crate::error::{Problem, ProjectError};
 use crate::files::{folder_of, write_whole};
-use crate::project::{HairSection, PROJECT_VERSION, parse_text, read_text, text_options};
+use crate::project::{HairSection, LARGEST_BYTES, PROJECT_VERSION, parse_text, read_text, text_options};
 
 /// The extension of files that hold a style, without the dot.
 pub const STYLE_EXTENSION: &str = "lovelockstyle";
@@ -108,7 +108,7 @@ impl Style {
     /// # Errors
     /// As [`Style::parse`], and if the file cannot be read or is larger than a project can be.
     pub fn load(path: &Path) -> Result<(Self, Vec<Problem>), ProjectError> {
-        let (mut style, problems) = Self::parse(path, &read_text(path, "style")?)?;
+        let (mut style, problems) = Self::parse(path, &read_text(path, "style", LARGEST_BYTES)?)?;
         let folder = folder_of(path);
         style.hair.files_mut().for_each(|file| *file = file.clone().in_memory(&folder));
         if style.name.is_empty() {

@@ -162,14 +162,6 @@ struct Nearest<'a> {
 }
 
 impl SpanSink for Nearest<'_> {
-    fn is_row_open(&self, _row: usize) -> bool {
-        true
-    }
-
-    fn is_open(&self, _block: usize) -> bool {
-        true
-    }
-
     fn take(&mut self, _: &ShadedPoint, _: &ShadedPoint, span: &Span) {
         for lane in 0..BLOCK_LANES {
             let (alpha, depth) = (span.alpha[lane], span.depth[lane]);

@@ -9,6 +9,7 @@ use lovelock_motion::{Pose, pose_at};
 use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
+use lovelock_project::project::read_text;
 use lovelock_style::hand::HandEdits;
 use lovelock_style::operations::Hand;
 use lovelock_style::{Layer, StyleStack};
@@ -71,10 +72,9 @@ pub const STROKES_EXTENSION: &str = StrokeFile::EXTENSION;
 /// # Errors
 /// The file cannot be read, or holds something else.
 pub fn read_strokes(path: &Path) -> Result<StrokeFile, ProjectError> {
-    let name = path.display();
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| ProjectError::input(path, format!("{name}: {error}")))?;
-    StrokeFile::from_text(&text).map_err(|error| ProjectError::input(path, format!("{name}: {error}")))
+    let text = read_text(path, "file of recorded strokes", StrokeFile::LONGEST as u64)?;
+    let wrong = |error| ProjectError::input(path, format!("{}: {error}", path.display()));
+    StrokeFile::from_text(&text).map_err(wrong)
 }
 
 /// How many samples of the strokes were played. Reported between two steps, so that a long stroke can be cancelled.

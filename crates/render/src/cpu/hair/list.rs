@@ -99,16 +99,6 @@ struct List<'a> {
 
 impl SpanSink for List<'_> {
     #[inline(always)]
-    fn is_row_open(&self, _row: usize) -> bool {
-        true
-    }
-
-    #[inline(always)]
-    fn is_open(&self, _block: usize) -> bool {
-        true
-    }
-
-    #[inline(always)]
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span) {
         let (left, top) = pixel_of(span.block, 0);
         let mut seen = [0_u32; BLOCK_LANES];

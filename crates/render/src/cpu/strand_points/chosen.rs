@@ -6,7 +6,9 @@ use lovelock_base::simd::Width;
 use lovelock_base::simd_versions;
 use rayon::prelude::*;
 
-use super::{LANES, PIECE, PointsIn, ShadedPoint, ShadedPoints, is_sparse, out_of, shade_group, sparse};
+use super::{
+    LANES, PIECE, PointsIn, ShadedPoint, ShadedPoints, is_sparse, out_of, shade_group, shade_points, sparse,
+};
 use crate::cpu::view::View;
 
 /// Places all points, in parallel, where [`shade_all`](super::shade_all) places them. Their colours are black.
@@ -30,22 +32,9 @@ pub(in crate::cpu) fn place_all(
 }
 
 simd_versions! {
-    /// [`place_points`] for the vectors of `width`.
+    /// Places points as [`shade_points`] for the vectors of `width`.
     fn place_points_simd(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) -> () {
-        place_points(view, input, first, out)
-    }
-}
-
-/// Places the points from `first` on.
-#[inline(always)]
-fn place_points(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
-    for (group, out) in out.chunks_mut(LANES).enumerate() {
-        let mut indices = [0; LANES];
-        for (lane, index) in indices.iter_mut().enumerate() {
-            *index = first + group * LANES + lane;
-        }
-        let (placed, _) = shade_group::<false, 1>(view, input, &indices);
-        out.copy_from_slice(&placed[..out.len()]);
+        shade_points::<false>(view, input, first, out)
     }
 }
 

@@ -175,7 +175,7 @@ fn out_of(input: &PointsIn) -> usize {
 simd_versions! {
     /// [`shade_points`] for the vectors of `width`.
     fn shade_points_simd(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) -> () {
-        shade_points(view, input, first, out)
+        shade_points::<true>(view, input, first, out)
     }
 }
 
@@ -219,15 +219,15 @@ fn shade_parts(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoi
     }
 }
 
-/// Shades the points from `first` on.
+/// Shades the points from `first` on, or places them alone.
 #[inline(always)]
-fn shade_points(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
+fn shade_points<const LIT: bool>(view: &View, input: &PointsIn, first: usize, out: &mut [ShadedPoint]) {
     for (group, out) in out.chunks_mut(LANES).enumerate() {
         let mut indices = [0; LANES];
         for (lane, index) in indices.iter_mut().enumerate() {
             *index = first + group * LANES + lane;
         }
-        let (shaded, _) = shade_group::<true, 1>(view, input, &indices);
+        let (shaded, _) = shade_group::<LIT, 1>(view, input, &indices);
         out.copy_from_slice(&shaded[..out.len()]);
     }
 }
