@@ -13,10 +13,10 @@ use rayon::prelude::*;
 
 use super::bins::Bins;
 use super::clusters::PlacedClusters;
-use super::hair::blend::BlendState;
 use super::hair::fragments::{bounds, is_drawn};
 use super::hair::list::Fragments;
 use super::hair::order::{Pieces, SegmentKeys};
+use super::hair::state::BlendState;
 use super::hair::weigh::Weighed;
 use super::strand_points::{PointsIn, ShadedPoint, ShadedPoints, shade_all};
 use super::surface::PlacedSurface;

@@ -5,7 +5,7 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
-use super::blend::BlendState;
+use super::state::BlendState;
 use crate::cpu::math::{max, min, saturate, sin, smoothstep};
 use crate::cpu::strand_points::ShadedPoint;
 use crate::cpu::tile::{BLOCK_HEIGHT, BLOCK_LANES, BLOCK_WIDTH, BLOCKS_IN_ROW, TILE};

@@ -1,10 +1,11 @@
 //! Strands on the CPU: sorted into tiles, then rasterised with analytic coverage.
 //!
-//! `blend` blends segments from near to far, and `weigh` does so before their light is known; `list` keeps all fragments of a tile, for the
-//! transparency modes that need them.
+//! `blend` blends segments from near to far into the `state` of a tile, and `weigh` does so before their light is known; `list` keeps all
+//! fragments of a tile, for the transparency modes that need them.
 
 pub(super) mod blend;
 pub(super) mod fragments;
 pub(super) mod list;
 pub(super) mod order;
+pub(super) mod state;
 pub(super) mod weigh;

@@ -10,8 +10,9 @@ use glam::Vec4;
 use lovelock_base::memory::list_bytes;
 use lovelock_base::simd_versions;
 
-use super::blend::{BlendState, BlendTile, FETCHED, ends_of, take_four};
+use super::blend::{BlendTile, FETCHED, ends_of, take_four};
 use super::fragments::{Span, SpanSink, each_span};
+use super::state::BlendState;
 use crate::cpu::strand_points::ShadedPoint;
 use crate::cpu::surface::raster::Occlusion;
 use crate::cpu::tile::{BLOCK_LANES, UNSEEN};
