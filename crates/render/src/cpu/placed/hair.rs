@@ -4,6 +4,7 @@ use super::{PlacedScene, TileScratch};
 use crate::Transparency;
 use crate::cpu::hair::blend::{BlendTile, blend_segments_simd};
 use crate::cpu::hair::list::{ListTile, list_segments_simd};
+use crate::cpu::hair::state::BlendState;
 use crate::cpu::hair::weigh::{Weighed, add_light_simd, weigh_segments_simd};
 use crate::cpu::transparency::resolve_tile;
 use crate::cpu::view::View;
