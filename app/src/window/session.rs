@@ -56,7 +56,7 @@ pub(crate) struct Session {
     /// The project that was last sent to the simulation.
     simulated: Arc<Project>,
     /// Inputs of the user so far that an image shows.
-    inputs: Inputs,
+    pub(crate) inputs: Inputs,
     /// The last request to the render thread.
     pub(crate) drawn: Option<RenderRequest>,
     resolution: Resolution,
@@ -269,10 +269,7 @@ impl Session {
                     self.playing = false;
                     self.failed.push(message);
                 }
-                Event::Brushed(brushed) => {
-                    self.inputs.brushed();
-                    self.brushed.push(brushed);
-                }
+                Event::Brushed(brushed) => self.brushed.push(brushed),
                 Event::Panicked { thread, message } => {
                     self.failed.push(format!(
                         "The {thread} thread failed and was restarted. Save your project. ({message})"
@@ -367,7 +364,7 @@ impl Session {
         if !same {
             self.same_since = Stopwatch::start();
         }
-        self.inputs.drawn(&frame.scene.style);
+        self.inputs.drawn(&frame.scene.source);
         let still = !self.playing && self.same_since.elapsed() >= AT_REST;
         let automatic = self.view.rate.is_some();
         let scale = if still || !automatic { 1.0 } else { self.resolution.scale() };
