@@ -360,7 +360,7 @@ impl Window {
             if let Some(error) = &self.session.draw_error {
                 Viewport::caption(ui, rect, Align2::LEFT_BOTTOM, error, theme::wrong());
             }
-            let ms = self.session.stages.median_total();
+            let ms = self.session.times.stages.median_total();
             let adapter = self.session.painter().adapter();
             let name = adapter.map_or_else(String::new, |adapter| adapter.name.clone());
             let size = self.size_label();

@@ -16,7 +16,7 @@ use lovelock_session::render_thread::{
 use lovelock_session::resolution::Resolution;
 use lovelock_session::scene::Scene;
 use lovelock_session::snapshot::FrameSnapshot;
-use lovelock_session::stats::{PassHistory, StageHistory};
+use lovelock_session::stats::ImageTimes;
 use lovelock_session::strokes::StrokeReport;
 use lovelock_session::window_device::WindowDevice;
 use lovelock_session::worker::{Event, Worker};
@@ -56,7 +56,7 @@ pub(crate) struct Session {
     /// The project that was last sent to the simulation.
     simulated: Arc<Project>,
     /// Inputs of the user so far that an image shows.
-    inputs: Inputs,
+    pub(crate) inputs: Inputs,
     /// The last request to the render thread.
     pub(crate) drawn: Option<RenderRequest>,
     resolution: Resolution,
@@ -73,8 +73,7 @@ pub(crate) struct Session {
     pub(crate) surroundings: LoadedSurroundings,
     /// Notes about the curves that play.
     pub(crate) take_notes: Vec<String>,
-    pub(crate) stages: StageHistory,
-    pub(crate) passes: PassHistory,
+    pub(crate) times: ImageTimes,
     pub(crate) playing: bool,
     /// Seconds of the dance per second.
     pub(crate) rate: f64,
@@ -146,8 +145,7 @@ impl Session {
             body: LoadedBody::default(),
             surroundings: LoadedSurroundings::default(),
             take_notes: Vec::new(),
-            stages: StageHistory::new(PLOTTED_FRAMES),
-            passes: PassHistory::new(PLOTTED_FRAMES),
+            times: ImageTimes::new(PLOTTED_FRAMES),
             playing: true,
             rate: 1.0,
             display_hz: 0.0,
@@ -271,10 +269,7 @@ impl Session {
                     self.playing = false;
                     self.failed.push(message);
                 }
-                Event::Brushed(brushed) => {
-                    self.inputs.brushed();
-                    self.brushed.push(brushed);
-                }
+                Event::Brushed(brushed) => self.brushed.push(brushed),
                 Event::Panicked { thread, message } => {
                     self.failed.push(format!(
                         "The {thread} thread failed and was restarted. Save your project. ({message})"
@@ -288,7 +283,6 @@ impl Session {
         let newer = self.painter.images().newer_than(&mut self.seen_painted);
         // An image that was still being drawn when the page was left is not seen.
         if let Some(painted) = newer.filter(|_| self.drawn.is_some()) {
-            self.stages.push(painted.times);
             // Times of another size, as those of the images before a change, say nothing about this one.
             if let (Some((size, ms)), Some(drawn)) = (painted.cost, &self.drawn)
                 && drawn.quality != ImageQuality::Refined
@@ -296,7 +290,7 @@ impl Session {
             {
                 self.resolution.take(ms, self.view.rate.unwrap_or_default());
             }
-            self.passes.push(&painted.stats.passes);
+            self.times.push(painted.times, &painted.stats);
             self.painted = Some(painted);
         }
         self.draw_error = self.painter.error();
@@ -370,7 +364,7 @@ impl Session {
         if !same {
             self.same_since = Stopwatch::start();
         }
-        self.inputs.drawn(&frame.scene.style);
+        self.inputs.drawn(&frame.scene.source);
         let still = !self.playing && self.same_since.elapsed() >= AT_REST;
         let automatic = self.view.rate.is_some();
         let scale = if still || !automatic { 1.0 } else { self.resolution.scale() };

@@ -47,8 +47,8 @@ impl Window {
                 .painted
                 .as_ref()
                 .map(|painted| (painted.stats.shadow_bytes, painted.stats.shadow_fallbacks)),
-            stages: &session_now.stages,
-            passes: &session_now.passes,
+            stages: &session_now.times.stages,
+            passes: &session_now.times.passes,
             facts: &facts,
             pane: None,
             marked_gauge: tools.marked_gauge.as_ref().map(|gauge| gauge.kind),

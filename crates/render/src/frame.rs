@@ -36,7 +36,8 @@ pub struct FrameInput<'a> {
     /// Settings of the picture as a whole.
     pub picture: &'a PictureSettings,
     /// Whether a better image follows soon, as while something moves in a window: then the CPU draws half as many strands by their
-    /// size, computes scattering at every second point of them, and builds the shadow maps of much hair from fewer strands.
+    /// size, computes scattering at every second point of them, and builds the shadow maps of much hair from fewer strands if the method
+    /// adds them up ([`ShadowMethod::sums_strands`](crate::ShadowMethod::sums_strands)).
     pub is_draft: bool,
     /// A picture of the surroundings that gives light from all directions, in place of sky and ground.
     pub surroundings: Option<&'a Arc<Panorama>>,

@@ -167,18 +167,20 @@ impl Threads {
             if let Event::Brushed(report) = event {
                 self.brushed += 1;
                 let mut changed = (*self.project).clone();
+                if changed.hair.stack.hand(report.layer) != Some(&report.edits) {
+                    self.inputs.brushed(report.layer, &report.edits);
+                }
                 if let Some(layer) = changed.hair.stack.layer_mut(report.layer) {
                     layer.operation = Operation::Hand(Hand { edits: report.edits });
                 }
                 self.project = Arc::new(changed);
-                self.inputs.brushed();
                 self.worker.set_project(Arc::clone(&self.project), Access::new());
             }
         }
         if let Some(frame) = self.worker.frame()
             && self.drawn.as_ref().is_none_or(|drawn| !Arc::ptr_eq(drawn, &frame))
         {
-            self.inputs.drawn(&frame.scene.style);
+            self.inputs.drawn(&frame.scene.source);
             self.painter.request(RenderRequest {
                 project: Arc::clone(&self.project),
                 snapshot: Arc::clone(&frame),

@@ -189,6 +189,30 @@ impl PassHistory {
     }
 }
 
+/// The times of the last whole images. That of an image that shows only what has moved is not the time of a whole one.
+#[derive(Clone, Debug)]
+pub struct ImageTimes {
+    /// Times of stages.
+    pub stages: StageHistory,
+    /// Times of passes.
+    pub passes: PassHistory,
+}
+
+impl ImageTimes {
+    /// Times of the last `capacity` whole images (at least one).
+    pub fn new(capacity: usize) -> Self {
+        Self { stages: StageHistory::new(capacity), passes: PassHistory::new(capacity) }
+    }
+
+    /// Adds an image, unless it shows only what has moved.
+    pub fn push(&mut self, times: StageTimes, stats: &FrameStats) {
+        if stats.redrawn.is_none() {
+            self.stages.push(times);
+            self.passes.push(&stats.passes);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,6 +240,18 @@ mod tests {
         assert_eq!(history.medians(), [pass("a", 20.0), pass("c", 5.0)]);
         history.push(&[pass("d", 1.0), pass("c", 7.0), pass("a", 20.0)]);
         assert_eq!(history.medians(), [pass("d", 1.0), pass("c", 6.0), pass("a", 20.0)], "as they come now");
+    }
+
+    #[test]
+    fn images_of_what_has_moved_are_not_among_the_times() {
+        let passes = |ms: f64| vec![PassTime { name: "draw/tiles".to_owned(), ms }];
+        let mut times = ImageTimes::new(9);
+        for (ms, redrawn) in [(8.0, None), (1.0, Some(0.1)), (2.0, Some(0.2)), (8.0, None)] {
+            let stats = FrameStats { redrawn, passes: passes(ms), ..FrameStats::default() };
+            times.push(StageTimes { draw: ms, ..StageTimes::default() }, &stats);
+        }
+        assert_eq!(times.stages.series(Stage::Draw).collect::<Vec<_>>(), [8.0, 8.0]);
+        assert_eq!(times.passes.medians(), passes(8.0));
     }
 
     #[test]

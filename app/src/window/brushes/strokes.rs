@@ -153,7 +153,11 @@ impl Window {
         }
         let (gesture, label) = (strokes.open[at].gesture, strokes.open[at].tool.names().1.to_lowercase());
         let acts = strokes.open[at].before != brushed.edits;
-        if brushed.ended && !acts && strokes.open[at].left == brushed.edits {
+        let is_new = strokes.open[at].left != brushed.edits;
+        if is_new {
+            self.session.inputs.brushed(brushed.layer, &brushed.edits);
+        }
+        if brushed.ended && !acts && !is_new {
             let open = strokes.open.remove(at);
             return self.end_without_change(&open);
         }

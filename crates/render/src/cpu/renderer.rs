@@ -228,18 +228,19 @@ impl CpuRenderer {
         let shows = self.will_show(input, &hair, size, &target);
         let shown = self.shown.take().filter(|_| unchanged.depth());
         let is_over = shown.zip(shows.as_ref()).is_some_and(|(shown, shows)| shown.is_same(shows));
-        let mut is_hurried = is_over && self.hurries && !unchanged.strands;
-        let mut ambient_ms = None;
+        // An attempt shades all points unless their light waits, and that costs more than it saves if it comes to nothing.
+        let mut is_hurried = is_over && self.hurries && !unchanged.strands && self.placed.is_late(input);
+        let (mut ambient_ms, mut lost_ms) = (None, None);
         let mut stats = loop {
+            let watch = Stopwatch::start();
             if !is_hurried {
-                let watch = Stopwatch::start();
                 light.follow(input);
                 ambient_ms = Some(watch.ms());
             }
             match self.draw(input, (&hair, &light), unchanged, size, &mut target, is_hurried).transpose() {
                 Some(stats) => break stats,
                 // Only an image in a hurry comes to nothing.
-                None => is_hurried = false,
+                None => (is_hurried, lost_ms) = (false, Some(watch.ms())),
             }
         };
         self.shown = match &stats {
@@ -249,10 +250,16 @@ impl CpuRenderer {
             Err(_) => None,
         };
         (self.strands, self.drawn, self.light) = (made, drawn, Some(light));
+        if !input.is_draft {
+            // Only drafts are compared with the image before.
+            self.moved = Moved::default();
+        }
         if let Ok(stats) = &mut stats {
-            if let Some(ms) = ambient_ms {
-                stats.draw_ms += ms;
-                stats.passes.push(PassTime { name: "draw/ambient".to_owned(), ms });
+            for (name, ms) in [("draw/ambient", ambient_ms), ("draw/moved", lost_ms)] {
+                if let Some(ms) = ms {
+                    stats.draw_ms += ms;
+                    stats.passes.push(PassTime { name: name.to_owned(), ms });
+                }
             }
             if unchanged.strands {
                 stats.kept.push(PassTime { name: INTERPOLATE.to_owned(), ms: kept_ms });

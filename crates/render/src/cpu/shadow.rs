@@ -99,8 +99,10 @@ impl LightShadow {
         self.frame = placed_frame(self.base, light, look.anchor());
         let from = ShadowInput {
             strands: frame.casters,
-            strand_width: look.strand_width * frame.each_for,
-            extinction_scale: look.extinction_scale,
+            // Texels, profiles and ribbons follow the width of a strand, so it stays that of the strands. What the casters stand for is
+            // in the factor on their optical depth, of which the methods with fewer casters are sums.
+            strand_width: look.strand_width,
+            extinction_scale: look.extinction_scale * frame.each_for,
             light: self.frame,
             anchor: look.anchor(),
             maps: frame.maps,
@@ -186,7 +188,7 @@ impl ShadowStage {
     }
 
     /// Builds the maps from the `stored` strands, and looks up the points of the `drawn` ones and the vertices, as far as that is not
-    /// `unchanged`. In a draft, not all strands of much hair are in the maps; finer maps that are known serve it too.
+    /// `unchanged`. In a draft, not all strands of much hair are in maps that add strands up; finer maps that are known serve it too.
     /// `same_points` tells whether the drawn points are those of the last frame. Fine strands, each of so many points, are
     /// looked up at places that are apart: see [`moved_apart`].
     ///
@@ -215,7 +217,7 @@ impl ShadowStage {
         if let Some(known) = input.known {
             known.check(lights.len(), drawn.points(), positions.len())?;
         }
-        let step = step_of(stored, input.is_draft && input.known.is_none());
+        let step = step_of(stored, input.is_draft && input.known.is_none() && method.sums_strands());
         for (k, light) in self.lights.iter_mut().enumerate() {
             let map = was_whole && unchanged.strands && unchanged.lights[k] && light.step <= step;
             light.keeps = Keeps { map, points: map && same_points, vertices: map && unchanged.surface };

@@ -13,7 +13,7 @@ use lovelock_testkit::flip;
 const SIZE: [u32; 2] = [160, 120];
 
 /// A picture of one grey.
-fn grey(byte: u8) -> Option<Arc<BackdropPicture>> {
+pub(super) fn grey(byte: u8) -> Option<Arc<BackdropPicture>> {
     let pixels = BackdropPixels::Display(vec![[byte, byte, byte, 255]; 16 * 12]);
     BackdropPicture::from_pixels([16, 12], pixels).map(Arc::new)
 }

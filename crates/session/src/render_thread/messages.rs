@@ -38,7 +38,8 @@ pub struct RenderRequest {
     /// A mask that is shown on hair and scalp in place of their colours.
     pub mask: Option<Arc<ShownMask>>,
     /// Rises with each input of the user that the image shows, and not with the frames of a dance: see [`Inputs`](super::Inputs). The CPU
-    /// gives up an image that has hardly begun if a request with another number waits.
+    /// gives up an image that has hardly begun if a request with another number waits, and shows first what has moved until an image with
+    /// this number is whole.
     pub input: u64,
 }
 

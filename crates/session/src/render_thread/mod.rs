@@ -395,7 +395,7 @@ impl Worker {
             jobs.is_dropped() || for_newer.as_ref().is_some_and(Interrupt::is_due)
         })));
         let moves = part == Part::Image && request.quality == ImageQuality::Draft;
-        renderer.set_hurrying(moves && self.patience.hurries());
+        renderer.set_hurrying(moves && self.patience.hurries(request.input));
         let RenderRequest { project, snapshot, size, measured, .. } = request;
         let mut times = snapshot.times;
         let camera = snapshot.camera(&project.camera);
@@ -445,7 +445,7 @@ impl Worker {
         } else if stats.redrawn.is_none() {
             self.cost = Some((*size, stats.interpolate_ms + stats.shadow_ms + stats.draw_ms));
         }
-        self.patience.finished(stats.redrawn.is_some());
+        self.patience.finished(request.input, stats.redrawn.is_some());
         times.take_picture(&stats);
         let (step, position_secs) = (snapshot.step, snapshot.position_secs);
         let (samples, snapshot) = (self.samples.taken().max(1), Arc::clone(snapshot));

@@ -38,6 +38,8 @@ pub(super) struct Patience {
     watch: Option<Stopwatch>,
     /// Since when images show only what has moved.
     late: Option<Stopwatch>,
+    /// The input of the last whole image.
+    whole_of: Option<u64>,
     /// Whether the image that was begun last has been given up.
     gave_up: Arc<AtomicBool>,
 }
@@ -57,14 +59,16 @@ impl Patience {
             usual_secs: 0.0,
             watch: None,
             late: None,
+            whole_of: None,
             gave_up: Arc::default(),
         }
     }
 
-    /// Whether the next image may show first what has moved.
-    pub(super) fn hurries(&self) -> bool {
+    /// Whether the next image, of `input`, may show first what has moved. Hair that moves on after a whole image of the same input is
+    /// simulated, and nobody waits for it.
+    pub(super) fn hurries(&self, input: u64) -> bool {
         let is_late = self.late.is_some_and(|since| since.elapsed() >= self.longest_late);
-        self.usual_secs > self.hurried_from_secs && !is_late
+        self.usual_secs > self.hurried_from_secs && !is_late && self.whole_of != Some(input)
     }
 
     /// What ends a part of an image of `input` early, which begins now; `None` if it must be finished. `waiting` returns the input of the
@@ -100,15 +104,15 @@ impl Patience {
         }))
     }
 
-    /// Takes the time of the image that was finished, unless it shows only what has moved.
-    pub(super) fn finished(&mut self, is_partial: bool) {
+    /// Takes the time of the image of `input` that was finished, unless it shows only what has moved.
+    pub(super) fn finished(&mut self, input: u64, is_partial: bool) {
         self.gave_up.store(false, Ordering::Relaxed);
         let watch = self.watch.take();
         if is_partial {
             self.late.get_or_insert_with(Stopwatch::start);
             return;
         }
-        self.late = None;
+        (self.late, self.whole_of) = (None, Some(input));
         let Some(watch) = watch else { return };
         let secs = watch.secs();
         self.usual_secs =
@@ -129,7 +133,7 @@ mod tests {
     fn an_image_is_given_up_early_for_other_input_and_not_twice_in_a_row() {
         let mut patience = Patience::default();
         assert!(patience.interrupt((1, Part::Image), || Some(2)).is_none(), "the first image");
-        patience.finished(false);
+        patience.finished(1, false);
         patience.usual_secs = 3600.0;
         assert!(!is_due(&mut patience, Part::Image, None), "nothing waits");
         assert!(!is_due(&mut patience, Part::Image, Some(1)), "a frame of the same input waits");
@@ -137,9 +141,9 @@ mod tests {
         assert!(!is_due(&mut patience, Part::Sample, None));
         assert!(is_due(&mut patience, Part::Image, Some(2)));
         assert!(!is_due(&mut patience, Part::Image, Some(2)), "the one after it is finished");
-        patience.finished(false);
+        patience.finished(1, false);
         assert!(is_due(&mut patience, Part::Image, Some(3)), "and the next is not");
-        patience.finished(false);
+        patience.finished(1, false);
         patience.usual_secs = 1e-9;
         assert!(!is_due(&mut patience, Part::Image, Some(2)), "too late");
         // What completes an image is given up at any time, and again and again.
@@ -152,17 +156,17 @@ mod tests {
     #[test]
     fn slow_images_show_first_what_has_moved_but_not_for_long() {
         let mut patience = Patience::default();
-        assert!(!patience.hurries(), "nothing is known yet");
+        assert!(!patience.hurries(1), "nothing is known yet");
         patience.usual_secs = 0.9 * HURRIED_FROM_SECS;
-        assert!(!patience.hurries(), "quick images");
+        assert!(!patience.hurries(1), "quick images");
         patience.usual_secs = 1.1 * HURRIED_FROM_SECS;
-        assert!(patience.hurries());
+        assert!(patience.hurries(1));
         let usual = patience.usual_secs;
-        patience.finished(true);
-        assert!(patience.hurries() && patience.usual_secs == usual, "a part has no usual time");
+        patience.finished(1, true);
+        assert!(patience.hurries(1) && patience.usual_secs == usual, "a part has no usual time");
         patience.longest_late = Duration::ZERO;
-        assert!(!patience.hurries(), "too late");
-        patience.finished(false);
-        assert!(patience.hurries(), "after a whole image");
+        assert!(!patience.hurries(1) && !patience.hurries(2), "too late");
+        patience.finished(1, false);
+        assert!(!patience.hurries(1) && patience.hurries(2), "after a whole image, for newer input");
     }
 }

@@ -399,6 +399,12 @@ fn what_a_brush_moves_is_shown_first_and_the_whole_image_after_it() {
     go_on();
     let (whole, redrawn, has_cost) = next();
     assert!(redrawn.is_none() && has_cost && *whole == anew(&moved, true), "the rest follows by itself");
+    // Hair that moves on without new input.
+    let swung = brushed(0.025);
+    thread.request(request(&swung, ImageQuality::Draft, 1));
+    go_on();
+    let (image, redrawn, _) = next();
+    assert!(redrawn.is_none() && *image == anew(&swung, true), "nobody waits for it");
 
     // The whole of an image is left out where the brush moves on.
     let further = [brushed(0.03), brushed(0.04)];

@@ -42,6 +42,8 @@ pub(crate) struct Method {
     pub footprint: fn(&ShadowInput, &ShadowSettings, &Bounds) -> TexelFrame,
     /// Whether strands block light, with these settings, by the number of their points and not by their length.
     pub counts_points: fn(&ShadowSettings) -> bool,
+    /// See [`ShadowMethod::sums_strands`].
+    pub sums_strands: bool,
     /// Whether the method itself follows the rays of lights that stand somewhere, in the world. Otherwise they are made parallel for it.
     pub in_world: bool,
     /// An empty map on the CPU.
@@ -109,6 +111,12 @@ impl ShadowMethod {
     /// [`GpuShadowInput::extent`](crate::GpuShadowInput::extent).
     pub const fn in_world(self) -> bool {
         self.method().in_world
+    }
+
+    /// Whether optical depth is a sum over strands, each in proportion to [`ShadowInput::extinction_scale`]: then a sample of the
+    /// strands, with a larger scale, casts about the shadow of all.
+    pub const fn sums_strands(self) -> bool {
+        self.method().sums_strands
     }
 
     /// What a map of the method holds along a ray of its light.

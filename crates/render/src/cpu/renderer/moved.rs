@@ -50,25 +50,20 @@ pub(super) struct Shown {
 impl Shown {
     /// Whether both differ in the places of strands at most.
     pub fn is_same(&self, other: &Self) -> bool {
-        let has_same_surroundings = match (&self.surroundings, &other.surroundings) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (a, b) => a.is_none() && b.is_none(),
-        };
-        let has_same_carried_hair = match (&self.carried, &other.carried) {
-            (Some((a, look)), Some((b, other))) => Arc::ptr_eq(a, b) && look == other,
-            (a, b) => a.is_none() && b.is_none(),
-        };
         let numbers = |of: &Self| (of.grid, of.is_draft, of.behind, of.details);
+        let objects = |of: &Self| {
+            let carried = of.carried.as_ref().map(|(style, look)| (Arc::as_ptr(style), *look));
+            (of.surroundings.as_ref().map(Arc::as_ptr), carried)
+        };
         numbers(self) == numbers(other)
+            && objects(self) == objects(other)
             && self.constants == other.constants
             && (&self.look, &self.shadows, &self.settings) == (&other.look, &other.shadows, &other.settings)
             && self.lights == other.lights
-            && has_same_surroundings
-            && has_same_carried_hair
     }
 }
 
-/// Which points have moved since the last image, and the tiles that their strands touch. Kept from image to image for its memory.
+/// Which points have moved since the last image, and the tiles that their strands touch. Kept from draft to draft for its memory.
 #[derive(Debug, Default)]
 pub(super) struct Moved {
     /// The points of the last image.
@@ -173,7 +168,11 @@ impl CpuRenderer {
 
 #[cfg(test)]
 mod tests {
+    use glam::{Affine3A, Vec2, Vec3};
+    use lovelock_groom::{StrandSet, Strands};
+
     use super::*;
+    use crate::{Camera, HairPose, Picture, ShadowMethod, ShadowSettings, StrandCount};
 
     /// Strands of 20 points from the top down, one beside the other, in an image of eight by two tiles.
     fn points(columns: usize) -> Vec<ShadedPoint> {
@@ -223,5 +222,38 @@ mod tests {
         now[5].color = [1.0; 3];
         assert!(found(&now).is_empty());
         assert!(!moved.find(&still[1..], &segments, &grid), "other strands");
+    }
+
+    #[test]
+    fn an_image_that_is_no_draft_frees_what_drafts_are_compared_with() {
+        let set = StrandSet { first_point: vec![0], ..StrandSet::default() };
+        let style = Arc::new(Hairstyle { strands: set, ..Hairstyle::default() });
+        let strands = Strands { first_point: Arc::from([0_u32]), ..Strands::default() };
+        let shadow = ShadowSettings { method: ShadowMethod::None, ..ShadowSettings::default() };
+        let camera = Camera { eye: Vec3::Z, target: Vec3::ZERO, fov_y: 0.5, shear: Vec2::ZERO };
+        let picture = PictureSettings { strands: StrandCount::Stored, ..PictureSettings::default() };
+        let moved = Moved { before: points(1), ..Moved::default() };
+        let mut renderer = CpuRenderer { moved, ..CpuRenderer::default() };
+        for is_draft in [true, false] {
+            let input = FrameInput {
+                style: &style,
+                hair: HairPose::Strands(&strands),
+                guides: None,
+                look: HairLook::default(),
+                body: None,
+                world_from_head: Affine3A::IDENTITY,
+                lights: &[],
+                shadow: &shadow,
+                camera: &camera,
+                picture: &picture,
+                is_draft,
+                surroundings: None,
+                backdrop: None,
+                known: None,
+                carried: None,
+            };
+            renderer.picture(&input, 32, 32, &mut Picture::default()).expect("an image");
+            assert_eq!(renderer.moved.bytes() > 0, is_draft);
+        }
     }
 }

@@ -46,7 +46,8 @@ impl CpuRenderer {
 
     /// Sets whether the following pictures may show only what has moved, which is not so at first. Then, where nothing but hair has moved since
     /// the last picture, and in less than half of its tiles, only those are drawn over it. Their shadows are those of the last picture. The
-    /// statistics of such a picture tell its share: see [`FrameStats::redrawn`](crate::FrameStats::redrawn).
+    /// statistics of such a picture tell its share: see [`FrameStats::redrawn`](crate::FrameStats::redrawn). Pictures are drawn whole where all
+    /// strand points are shaded first, as in all modes of transparency but [`Transparency::Sorted`](crate::Transparency::Sorted).
     pub fn set_hurrying(&mut self, hurries: bool) {
         self.hurries = hurries;
     }

@@ -31,6 +31,8 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.approximate_deep.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    // Light behind the nearest hair does not depend on how many strands there are.
+    sums_strands: false,
     in_world: false,
     cpu: || Box::new(ApproximateDeep::default()),
     gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<NearestHair>::new(gpu, projected)?)),

@@ -37,6 +37,7 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.deep_shadow_maps.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    sums_strands: true,
     in_world: false,
     cpu: || Box::new(DeepShadowMaps::default()),
     gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<DeepCurve>::new(gpu, projected)?)),

@@ -43,6 +43,7 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.density_clustering.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    sums_strands: true,
     in_world: false,
     cpu: || Box::new(DensityClustering::default()),
     gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<Clustering>::new(gpu, projected)?)),

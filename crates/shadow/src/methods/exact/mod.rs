@@ -28,6 +28,7 @@ pub(super) static METHOD: Method = Method {
     settings: |settings| Some(&settings.exact),
     footprint: |input, settings, bounds| TexelFrame::new(input, settings.exact.clamped().resolution, bounds),
     counts_points: |_| false,
+    sums_strands: true,
     in_world: false,
     cpu: || Box::new(ExactMap::default()),
     gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<SortedFragments>::new(gpu, projected)?)),

@@ -33,6 +33,7 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.fourier.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    sums_strands: true,
     in_world: false,
     cpu: || Box::new(Fourier::default()),
     gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<Series>::new(gpu, projected)?)),

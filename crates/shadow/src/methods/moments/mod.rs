@@ -37,6 +37,7 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.moments.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    sums_strands: true,
     in_world: false,
     cpu: || Box::new(Moments::default()),
     gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<DepthMoments>::new(gpu, projected)?)),

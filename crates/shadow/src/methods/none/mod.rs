@@ -25,6 +25,7 @@ pub(super) static METHOD: Method = Method {
     // Compared over the texels of the exact method.
     footprint: |input, settings, bounds| TexelFrame::new(input, settings.exact.clamped().resolution, bounds),
     counts_points: |_| false,
+    sums_strands: false,
     in_world: false,
     cpu: || Box::new(NoShadow),
     gpu: |_, gpu, projected| Ok(Box::new(GpuNoShadow::new(gpu, projected)?)),

@@ -38,6 +38,7 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.occupancy_maps.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    sums_strands: true,
     in_world: false,
     cpu: || Box::new(OccupancyMaps::default()),
     gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<Occupancy>::new(gpu, projected)?)),

@@ -35,6 +35,7 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.opacity_maps.clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    sums_strands: true,
     in_world: false,
     cpu: || Box::new(OpacityMaps::default()),
     gpu: |_, gpu, projected| Ok(Box::new(TexelShadow::<Slices>::new(gpu, projected)?)),

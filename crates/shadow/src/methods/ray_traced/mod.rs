@@ -32,6 +32,8 @@ pub(super) static METHOD: Method = Method {
     // Texels as wide as strands, like the squares on which rays start.
     footprint: |input, _, bounds| TexelFrame::new(input, *TEXEL_RESOLUTIONS.end(), bounds),
     counts_points: |_| false,
+    // A ray crosses a whole number of ribbons, and fewer of them would be seen as noise.
+    sums_strands: false,
     in_world: true,
     cpu: || Box::new(RayTraced::default()),
     gpu: |_, gpu, _| Ok(Box::new(gpu::GpuRayTraced::new(gpu)?)),

@@ -64,6 +64,8 @@ pub(super) static METHOD: Method = Method {
         TexelFrame::new(input, settings.of_user().clamped().resolution, bounds)
     },
     counts_points: |_| false,
+    // What it does with strands is not known.
+    sums_strands: false,
     in_world: false,
     cpu: || Box::new(NoShadow),
     gpu: UserShadow::boxed,

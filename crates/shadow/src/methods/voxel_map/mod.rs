@@ -66,6 +66,7 @@ pub(super) static METHOD: Method = Method {
         settings.voxel_map.slices == VoxelSlices::Uniform
             && settings.voxel_map.deposit == VoxelDeposit::PointCount
     },
+    sums_strands: true,
     in_world: false,
     cpu: || Box::new(VoxelShadow::default()),
     gpu: |_, gpu, projected| Ok(Box::new(GpuVoxelShadow::new(gpu, projected)?)),

@@ -38,6 +38,7 @@ pub(super) static METHOD: Method = Method {
     settings: |settings| Some(&settings.voxel_march),
     footprint,
     counts_points: |_| false,
+    sums_strands: true,
     in_world: true,
     cpu: || Box::new(VoxelMarch::default()),
     gpu: |_, gpu, _| Ok(Box::new(gpu::GpuVoxelMarch::new(gpu)?)),
