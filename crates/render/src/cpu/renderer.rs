@@ -237,11 +237,13 @@ impl CpuRenderer {
                 light.follow(input);
                 ambient_ms = Some(watch.ms());
             }
-            match self.draw(input, (&hair, &light), unchanged, size, &mut target, is_hurried).transpose() {
-                Some(stats) => break stats,
-                // Only an image in a hurry comes to nothing.
-                None => (is_hurried, lost_ms) = (false, Some(watch.ms())),
+            let done =
+                self.draw(input, (&hair, &light), unchanged, size, &mut target, is_hurried).transpose();
+            if let Some(stats) = done {
+                break stats;
             }
+            // Only an image in a hurry comes to nothing.
+            (is_hurried, lost_ms) = (false, Some(watch.ms()));
         };
         self.shown = match &stats {
             Ok(_) => shows,
