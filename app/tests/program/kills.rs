@@ -264,7 +264,7 @@ impl Recording {
             if kept.is_none() {
                 discard_unfinished(&out).expect("nothing stands against it");
             }
-            kept_name = kept.map(|_| self.name());
+            kept_name = kept.map(|_| self.name()).or(kept_name);
             work.forget();
         } else {
             assert!(named.exists() || !killed.ended, "it ended and left nothing");

@@ -118,7 +118,7 @@ pub fn keep_unfinished(out: &Path) -> Result<Option<Kept>, RecordError> {
     }
 }
 
-/// Removes what an interrupted recording to `out` left. Complete images of a sequence stay, and so does an older film.
+/// Removes what an interrupted recording to `out` left. Images that a manifest lists stay, and so does an older film.
 ///
 /// # Errors
 /// If another program writes it, or it cannot be removed.
@@ -518,6 +518,19 @@ mod tests {
         assert_eq!(keep_unfinished(&frames).unwrap().expect("images").frames, 3);
         assert!(read_manifest(&frames).unwrap().complete);
         assert_eq!(names(&frames), [&whole[..], &["notes.partial".to_owned()]].concat());
+        // Whole, and kept in part before it was to be continued.
+        for complete in [true, false] {
+            let manifest = fs::read_to_string(at("manifest.json")).unwrap();
+            let marked = manifest.replace("\"complete\": true", &format!("\"complete\": {complete}"));
+            fs::write(at("manifest.json"), marked).unwrap();
+            leave();
+            discard_unfinished(&frames).unwrap();
+            assert_eq!(read_manifest(&frames).unwrap().complete, complete);
+            let rest = [&whole[..], &["notes.partial".to_owned()]].concat();
+            assert_eq!(names(&frames), rest, "a whole sequence and its notes stay");
+        }
+        // Control: one that has no manifest yet goes.
+        fs::remove_file(at("manifest.json")).unwrap();
         leave();
         discard_unfinished(&frames).unwrap();
         assert_eq!(names(&frames), ["notes.partial"]);

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use super::journal::{JOURNAL_NAME, Journal, whole_frames};
-use super::sound_file::{SOUND_NAME, remove_own};
+use super::sound_file::SOUND_NAME;
 use super::{SequenceFormat, frame_name};
 use crate::RecordError;
 use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, read_manifest};
@@ -42,7 +42,7 @@ pub(crate) fn keep_unfinished(folder: &Path) -> Result<u64, RecordError> {
     if let Some(there) = journal.recorded() {
         let frames: Vec<_> = whole_frames(folder, there.frames).into_values().collect();
         count = frames.len() as u64;
-        if count > 0 && finished(folder, &frames).is_none() {
+        if count > 0 && !finished(folder, &frames) {
             write_manifest(folder, &Manifest { frames, complete: false, ..there })?;
         }
     }
@@ -52,7 +52,7 @@ pub(crate) fn keep_unfinished(folder: &Path) -> Result<u64, RecordError> {
     Ok(count)
 }
 
-/// Removes the images and the journal of an interrupted recording.
+/// Removes the images and the journal of an interrupted recording. Images that a manifest lists stay.
 ///
 /// # Errors
 /// If another program writes to the folder, or a file cannot be removed.
@@ -62,12 +62,12 @@ pub(crate) fn discard_unfinished(folder: &Path) -> io::Result<()> {
     }
     let mut journal = Journal::claim(folder).map_err(|error| io::Error::other(error.to_string()))?;
     if let Some(there) = journal.recorded() {
-        let frames: Vec<_> = whole_frames(folder, there.frames).into_values().collect();
-        if let Some(whole) = finished(folder, &frames) {
-            fs::remove_file(folder.join(MANIFEST_NAME))?;
-            whole.sound.iter().for_each(|sound| remove_own(folder, sound));
+        let mut frames = whole_frames(folder, there.frames);
+        // What a manifest lists stays: the recording was killed when it had written it, or before it had changed anything.
+        for listed in read_manifest(folder).map_or_else(|_| Vec::new(), |manifest| manifest.frames) {
+            frames.remove(&listed.number);
         }
-        for frame in frames {
+        for frame in frames.into_values() {
             // Names come from a file: only those in the folder itself are removed.
             if Path::new(&frame.file).components().count() == 1 {
                 fs::remove_file(folder.join(&frame.file))?;
@@ -80,9 +80,9 @@ pub(crate) fn discard_unfinished(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// The manifest, if it already lists these images as a whole sequence: the recording was killed before it could remove its journal.
-fn finished(folder: &Path, frames: &[ManifestFrame]) -> Option<Manifest> {
-    read_manifest(folder).ok().filter(|manifest| manifest.complete && manifest.frames == frames)
+/// Whether the manifest already lists these images as a whole sequence: the recording was killed before it could remove its journal.
+fn finished(folder: &Path, frames: &[ManifestFrame]) -> bool {
+    read_manifest(folder).is_ok_and(|manifest| manifest.complete && manifest.frames == frames)
 }
 
 /// Removes the files of a recording that had no final name yet. The caller has locked the folder, so nobody writes them.
