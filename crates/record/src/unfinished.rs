@@ -429,8 +429,8 @@ mod tests {
         names
     }
 
-    /// A sequence of which `count` images have their names.
-    fn begun(frames: &Path, count: u32) -> SequenceWriter {
+    /// A sequence that continues what is in the folder.
+    fn sequence(frames: &Path) -> Result<SequenceWriter, RecordError> {
         let settings = SequenceSettings {
             width: SIDE,
             height: SIDE,
@@ -441,7 +441,12 @@ mod tests {
             resume: true,
             settings: serde_json::json!({}),
         };
-        let mut writer = SequenceWriter::create(frames, settings).unwrap();
+        SequenceWriter::create(frames, settings)
+    }
+
+    /// A sequence of which `count` images have their names.
+    fn begun(frames: &Path, count: u32) -> SequenceWriter {
+        let mut writer = sequence(frames).unwrap();
         (0..count).for_each(|frame| writer.push(&picture(frame)).unwrap());
         wait_for(|| {
             // With the journal.
@@ -469,6 +474,31 @@ mod tests {
         // Control: a finished folder is left alone.
         discard_unfinished(kept.path()).unwrap();
         assert_eq!(fs::read_dir(kept.path()).unwrap().count(), 7);
+    }
+
+    #[test]
+    fn a_sequence_that_cannot_be_continued_keeps_the_images_of_the_interrupted_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let frames = folder.path().join("frames");
+        let writer = begun(&frames, 3);
+        let left = left_of(&frames);
+        drop(writer);
+        // Nothing can be written beside the journal, as on a full disk.
+        let blocked = left.path().join("manifest.partial.partial");
+        fs::create_dir(&blocked).unwrap();
+        sequence(left.path()).unwrap_err();
+        fs::remove_dir(&blocked).unwrap();
+        // An image that another thread wrote is listed behind a line that is not whole.
+        let journal = left.path().join("manifest.partial");
+        let lines = fs::read_to_string(&journal).unwrap();
+        let (head, images) = lines.split_once('\n').unwrap();
+        fs::write(&journal, format!("{head}\n{{\"number\": 7\n{images}")).unwrap();
+        assert_eq!(keep_unfinished(left.path()).unwrap().expect("images").frames, 3);
+        // Control: a folder in which nothing was recorded is left as it was.
+        let empty = tempfile::tempdir().unwrap();
+        fs::create_dir(empty.path().join("manifest.partial.partial")).unwrap();
+        sequence(empty.path()).unwrap_err();
+        assert_eq!(names(empty.path()), ["manifest.partial.partial"]);
     }
 
     #[test]
@@ -510,7 +540,8 @@ mod tests {
         // Killed when all was written but the journal was there, with files that have no name yet, and one of the user.
         let leave = || {
             fs::write(at("manifest.partial"), &journal).unwrap();
-            for name in ["frame_000003.png.partial", "manifest.json.partial", "notes.partial"] {
+            let begun = ["frame_000003.png.partial", "manifest.json.partial", "manifest.partial.partial"];
+            for name in begun.into_iter().chain(["notes.partial"]) {
                 fs::write(at(name), b"x").unwrap();
             }
         };

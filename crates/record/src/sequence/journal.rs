@@ -13,6 +13,7 @@ use serde_json::Value;
 use crate::RecordError;
 use crate::claim::claim;
 use crate::manifest::{Manifest, ManifestFrame, read_manifest};
+use crate::partial::partial_path;
 
 /// Name of the journal in the folder.
 pub(super) const JOURNAL_NAME: &str = "manifest.partial";
@@ -56,7 +57,7 @@ impl Journal {
     /// Starts a new journal with the frames that are kept.
     ///
     /// # Errors
-    /// Errors such as a full disk.
+    /// Errors such as a full disk. The earlier journal then stays as it was.
     pub fn begin(&mut self, head: &Manifest, kept: &BTreeMap<u64, ManifestFrame>) -> io::Result<()> {
         let mut text = serde_json::to_vec(head)?;
         text.push(b'\n');
@@ -64,10 +65,20 @@ impl Journal {
             text.extend(serde_json::to_vec(frame)?);
             text.push(b'\n');
         }
-        self.file.set_len(0)?;
-        self.file.rewind()?;
-        self.file.write_all(&text)?;
-        self.file.sync_all()
+        // Under another name first: until the new one is whole, nothing else lists the images of the earlier recording.
+        let new = partial_path(&self.path);
+        let mut file = claim(&new)?;
+        let written = file
+            .set_len(0)
+            .and_then(|()| file.write_all(&text))
+            .and_then(|()| file.sync_all())
+            .and_then(|()| fs::rename(&new, &self.path));
+        if let Err(error) = written {
+            let _ = fs::remove_file(&new);
+            return Err(error);
+        }
+        self.file = file;
+        Ok(())
     }
 
     /// Adds a frame that is about to get its final name.
@@ -94,11 +105,11 @@ impl Journal {
     }
 }
 
-/// The manifest in a journal. An incomplete last line is ignored.
+/// The manifest in a journal. Lines that are not whole, as a full disk leaves them, are ignored.
 fn parse(text: &[u8]) -> Option<Manifest> {
     let mut lines = text.split_inclusive(|&byte| byte == b'\n').filter(|line| line.ends_with(b"\n"));
     let mut manifest: Manifest = serde_json::from_slice(lines.next()?).ok()?;
-    manifest.frames = lines.map_while(|line| serde_json::from_slice(line).ok()).collect();
+    manifest.frames = lines.filter_map(|line| serde_json::from_slice(line).ok()).collect();
     Some(manifest)
 }
 

@@ -90,7 +90,7 @@ fn remove_partial_files(folder: &Path) {
     let is_ours = |name: &str| {
         let number = name.strip_prefix("frame_").and_then(|rest| rest.split('.').next()?.parse::<u64>().ok());
         let is_frame = |number| SequenceFormat::ALL.iter().any(|&format| frame_name(number, format) == name);
-        name == MANIFEST_NAME || name == SOUND_NAME || number.is_some_and(is_frame)
+        [MANIFEST_NAME, SOUND_NAME, JOURNAL_NAME].contains(&name) || number.is_some_and(is_frame)
     };
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();

@@ -161,7 +161,7 @@ impl SequenceWriter {
             }
         }
         if let Err(error) = journal.begin(&head, &self.kept) {
-            journal.remove();
+            journal.release();
             return Err(RecordError::io(&folder, "start a sequence in the folder", error));
         }
         let manifest_path = folder.join(MANIFEST_NAME);
