@@ -12,7 +12,7 @@ use super::note;
 use super::owner::Owner;
 use super::reader::{Contents, owner_in};
 use crate::error::ProjectError;
-use crate::files::canonical;
+use crate::files::{canonical, write_whole};
 use crate::history::History;
 use crate::state_folder::state_folder;
 
@@ -155,10 +155,7 @@ impl Journals {
         let _ = fs::rename(picture, aside.with_extension(PICTURE));
         if stays || renamed.is_some() || fs::rename(journal, &aside).is_err() {
             // It names another project now, stays, or is on another disk.
-            let partial = aside.with_extension("partial");
-            fs::write(&partial, renamed.map_or_else(|| fs::read(journal), Ok)?)?;
-            File::open(&partial)?.sync_all()?;
-            fs::rename(&partial, &aside)?;
+            write_whole(&aside, renamed.as_deref().unwrap_or(contents.bytes())).map_err(io::Error::other)?;
             if !stays {
                 fs::remove_file(journal)?;
             }

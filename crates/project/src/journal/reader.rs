@@ -85,6 +85,11 @@ impl Contents {
         Some(Self { owner, last: last?, shape, end, bytes })
     }
 
+    /// The bytes of the journal. Some systems let no other handle read a locked file.
+    pub(super) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
     /// The bytes of a journal that holds the same and names another project.
     ///
     /// # Errors
