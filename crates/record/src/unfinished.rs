@@ -4,10 +4,11 @@ use std::cmp::Reverse;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use crate::claim::claim;
 use crate::film::tables;
-use crate::partial::free_name;
+use crate::partial::{free_name, partial_path};
 use crate::sequence;
 use crate::take::{cut_takes, part_path};
 use crate::{OutputKind, RecordError, TAKE_EXTENSION, TakeReader};
@@ -60,9 +61,21 @@ pub fn is_unfinished(out: &Path) -> bool {
     match UnfinishedKind::of(out) {
         Some(UnfinishedKind::Film) => tables::is_left(out),
         Some(UnfinishedKind::Sequence) => sequence::is_left(out),
-        Some(UnfinishedKind::Take) => is_take_left(&part_path(out)),
+        Some(UnfinishedKind::Take) => is_left(&part_path(out)),
         None => false,
     }
+}
+
+/// Whether a recording to `out` that began at `since`, and has ended, left something of its own: it failed, as on a full disk.
+pub fn has_left(out: &Path, since: SystemTime) -> bool {
+    let written = match UnfinishedKind::of(out) {
+        Some(UnfinishedKind::Film) => partial_path(out),
+        Some(UnfinishedKind::Sequence) => sequence::journal_path(out),
+        // One that was left before has another name by now.
+        Some(UnfinishedKind::Take) | None => return is_unfinished(out),
+    };
+    let modified = || fs::metadata(&written).and_then(|data| data.modified());
+    is_left(&written) && modified().is_ok_and(|modified| modified >= since)
 }
 
 /// Whether a film is set aside that was left of `out` before it was recorded again. If that was interrupted too, the one that is aside can be
@@ -139,10 +152,10 @@ pub fn tidy_finished(out: &Path) {
     }
 }
 
-/// Whether an interrupted recording left the unfinished take. One that is being recorded is not left.
-fn is_take_left(part: &Path) -> bool {
+/// Whether a recording left the unfinished file. One that is being recorded is not left.
+fn is_left(file: &Path) -> bool {
     // A claim would create a file that is missing.
-    part.exists() && !claim(part).is_err_and(|error| error.kind() == io::ErrorKind::ResourceBusy)
+    file.exists() && !claim(file).is_err_and(|error| error.kind() == io::ErrorKind::ResourceBusy)
 }
 
 fn discard_take(part: &Path) -> io::Result<()> {
@@ -392,7 +405,7 @@ mod tests {
 
     #[test]
     fn takes_whose_files_were_renamed_are_found_by_the_name_that_was_recorded_again() {
-        use std::time::{Duration, SystemTime};
+        use std::time::Duration;
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         let (take, part) = (at("dance ü.take"), at("dance ü.take.part"));

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::journal::{JOURNAL_NAME, Journal, whole_frames};
 use super::sound_file::SOUND_NAME;
@@ -23,9 +23,14 @@ pub(super) fn write_manifest(folder: &Path, manifest: &Manifest) -> Result<(), R
     write().map_err(|error| RecordError::io(&path, "write the manifest", error))
 }
 
+/// The journal of a recording to the folder.
+pub(crate) fn journal_path(folder: &Path) -> PathBuf {
+    folder.join(JOURNAL_NAME)
+}
+
 /// Whether an interrupted recording left its journal in the folder.
 pub(crate) fn is_left(folder: &Path) -> bool {
-    folder.join(JOURNAL_NAME).exists()
+    journal_path(folder).exists()
 }
 
 /// Lists the complete images of an interrupted recording in a manifest. Returns their number.

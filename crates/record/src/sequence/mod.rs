@@ -8,7 +8,7 @@ mod sound_file;
 mod worker;
 
 pub use self::exr::FrameLayers;
-pub(crate) use left::{discard_unfinished, is_left, keep_unfinished};
+pub(crate) use left::{discard_unfinished, is_left, journal_path, keep_unfinished};
 pub use settings::{SequenceFormat, SequenceReport, SequenceSettings, frame_name};
 pub use sound_file::SOUND_NAME;
 pub(crate) use sound_file::remove_own;
