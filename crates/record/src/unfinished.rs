@@ -131,7 +131,8 @@ pub fn keep_unfinished(out: &Path) -> Result<Option<Kept>, RecordError> {
     }
 }
 
-/// Removes what an interrupted recording to `out` left. Images that a manifest lists stay, and so does an older film.
+/// Removes what an interrupted recording to `out` left. Images that a manifest lists, or listed before it, stay, and so does an
+/// older film.
 ///
 /// # Errors
 /// If another program writes it, or it cannot be removed.

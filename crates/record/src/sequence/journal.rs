@@ -1,7 +1,7 @@
 //! The journal of an unfinished sequence: its settings and its complete frames.
 //!
-//! It stays in the folder while frames are written, and also after a crash. Each line is JSON: first a manifest without
-//! frames, then one line per frame, just before the frame gets its final name.
+//! It stays in the folder while frames are written, and also after a crash. Each line is JSON: first a manifest with the frames that a
+//! manifest listed before and that are kept, then one line per frame, just before the frame gets its final name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -29,6 +29,21 @@ pub(super) struct Journal {
     is_new: bool,
 }
 
+/// What an earlier recording left.
+pub(super) struct Recorded {
+    /// All its frames.
+    pub manifest: Manifest,
+    /// How many of the first ones a manifest listed before that recording, or lists.
+    pub listed: usize,
+}
+
+impl Recorded {
+    /// The frames that a manifest listed before that recording, or lists.
+    pub fn listed(&self) -> &[ManifestFrame] {
+        &self.manifest.frames[..self.listed]
+    }
+}
+
 impl Journal {
     /// Locks the folder for this recording.
     ///
@@ -43,18 +58,21 @@ impl Journal {
     }
 
     /// What an earlier recording left in the folder: its journal or, if it ended regularly, its manifest.
-    pub fn earlier(&mut self, folder: &Path) -> Option<Manifest> {
-        self.recorded().or_else(|| read_manifest(folder).ok())
+    pub fn earlier(&mut self, folder: &Path) -> Option<Recorded> {
+        self.recorded().or_else(|| {
+            let manifest = read_manifest(folder).ok()?;
+            Some(Recorded { listed: manifest.frames.len(), manifest })
+        })
     }
 
     /// What the journal itself says.
-    pub fn recorded(&mut self) -> Option<Manifest> {
+    pub fn recorded(&mut self) -> Option<Recorded> {
         let mut text = Vec::new();
         let read = self.file.rewind().and_then(|()| (&self.file).take(MAX_BYTES).read_to_end(&mut text));
         read.ok().and_then(|_| parse(&text))
     }
 
-    /// Starts a new journal with the frames that are kept.
+    /// Starts a new journal. `head` has the frames that a manifest listed and that are kept, `kept` the others.
     ///
     /// # Errors
     /// Errors such as a full disk. The earlier journal then stays as it was.
@@ -105,12 +123,13 @@ impl Journal {
     }
 }
 
-/// The manifest in a journal. Lines that are not whole, as a full disk leaves them, are ignored.
-fn parse(text: &[u8]) -> Option<Manifest> {
+/// What a journal says. Lines that are not whole, as a full disk leaves them, are ignored.
+fn parse(text: &[u8]) -> Option<Recorded> {
     let mut lines = text.split_inclusive(|&byte| byte == b'\n').filter(|line| line.ends_with(b"\n"));
     let mut manifest: Manifest = serde_json::from_slice(lines.next()?).ok()?;
-    manifest.frames = lines.filter_map(|line| serde_json::from_slice(line).ok()).collect();
-    Some(manifest)
+    let listed = manifest.frames.len();
+    manifest.frames.extend(lines.filter_map(|line| serde_json::from_slice::<ManifestFrame>(line).ok()));
+    Some(Recorded { manifest, listed })
 }
 
 /// The frames of a manifest whose files match their length and checksum.

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::journal::{JOURNAL_NAME, Journal, whole_frames};
+use super::journal::{JOURNAL_NAME, Journal, Recorded, whole_frames};
 use super::sound_file::SOUND_NAME;
 use super::{SequenceFormat, frame_name};
 use crate::RecordError;
@@ -44,7 +44,7 @@ pub(crate) fn keep_unfinished(folder: &Path) -> Result<u64, RecordError> {
     let mut journal = Journal::claim(folder)?;
     let mut count = 0;
     // A recording that has not begun its journal has changed nothing: the manifest of the one before it stays.
-    if let Some(there) = journal.recorded() {
+    if let Some(Recorded { manifest: there, .. }) = journal.recorded() {
         let frames: Vec<_> = whole_frames(folder, there.frames).into_values().collect();
         count = frames.len() as u64;
         if count > 0 && !finished(folder, &frames) {
@@ -57,7 +57,8 @@ pub(crate) fn keep_unfinished(folder: &Path) -> Result<u64, RecordError> {
     Ok(count)
 }
 
-/// Removes the images and the journal of an interrupted recording. Images that a manifest lists stay.
+/// Removes the images and the journal of an interrupted recording. Images that a manifest lists, or listed before
+/// the recording, stay.
 ///
 /// # Errors
 /// If another program writes to the folder, or a file cannot be removed.
@@ -66,11 +67,17 @@ pub(crate) fn discard_unfinished(folder: &Path) -> io::Result<()> {
         return Ok(());
     }
     let mut journal = Journal::claim(folder).map_err(|error| io::Error::other(error.to_string()))?;
-    if let Some(there) = journal.recorded() {
-        let mut frames = whole_frames(folder, there.frames);
-        // What a manifest lists stays: the recording was killed when it had written it, or before it had changed anything.
-        for listed in read_manifest(folder).map_or_else(|_| Vec::new(), |manifest| manifest.frames) {
-            frames.remove(&listed.number);
+    if let Some(Recorded { manifest: mut there, listed }) = journal.recorded() {
+        let mut frames = whole_frames(folder, there.frames.split_off(listed));
+        let before: Vec<_> = whole_frames(folder, there.frames).into_values().collect();
+        if let Ok(manifest) = read_manifest(folder) {
+            // The recording was killed when it had written the manifest, or before it had changed anything.
+            for listed in manifest.frames {
+                frames.remove(&listed.number);
+            }
+        } else if !before.is_empty() {
+            let manifest = Manifest { frames: before, complete: false, ..there };
+            write_manifest(folder, &manifest).map_err(io::Error::other)?;
         }
         for frame in frames.into_values() {
             // Names come from a file: only those in the folder itself are removed.
