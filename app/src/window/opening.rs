@@ -3,8 +3,9 @@
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+use std::time::Duration;
 
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::watch::Watch;
@@ -18,6 +19,10 @@ use lovelock_project::project::HairSection;
 use lovelock_session::progress::Progress;
 use lovelock_session::strokes::{PlayStrokes, play_strokes, read_strokes};
 use lovelock_session::take::{CurvesToPlay, project_of_take};
+use lovelock_session::threads::background_workers;
+
+/// How often strokes that wait for others look whether it is their turn, or whether they were cancelled.
+const LOOK: Duration = Duration::from_millis(20);
 
 /// What a file is.
 pub(super) enum Found {
@@ -93,8 +98,13 @@ impl Played {
             };
             if watch.at(done).is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
-        let (project, report, problems) =
-            play_strokes(new, &Access::new(), &strokes, PlayStrokes::default(), &mut follow)?;
+        let mut play = || play_strokes(new, &Access::new(), &strokes, PlayStrokes::default(), &mut follow);
+        let _turn = turn(watch)?;
+        let played = match background_workers("strokes") {
+            Some(workers) => workers.install(play),
+            None => play(),
+        };
+        let (project, report, problems) = played?;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let missed = match report.missed {
             0 => String::new(),
@@ -102,6 +112,19 @@ impl Played {
         };
         let count = counted(report.strokes, "stroke", "strokes");
         Ok(Self { project, problems, said: format!("Played {count} of {name} as a new project{missed}.") })
+    }
+}
+
+/// Waits until no other strokes are played: each simulation uses every processor and has a scene of its own.
+fn turn(watch: &Watch) -> Result<MutexGuard<'static, ()>, ProjectError> {
+    static TURN: Mutex<()> = Mutex::new(());
+    loop {
+        match TURN.try_lock() {
+            Ok(turn) => return Ok(turn),
+            Err(TryLockError::Poisoned(turn)) => return Ok(turn.into_inner()),
+            Err(TryLockError::WouldBlock) => watch.at(0.0).map_err(|_| ProjectError::Cancelled)?,
+        }
+        std::thread::sleep(LOOK);
     }
 }
 
@@ -209,5 +232,26 @@ impl Openings {
     /// Opens none of the files. Their threads end by themselves.
     pub(super) fn cancel(&mut self) {
         self.0.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_are_played_one_file_at_a_time_and_those_that_wait_can_be_cancelled() {
+        let watch = Watch::default();
+        let first = turn(&Watch::default()).expect("a turn");
+        std::thread::scope(|scope| {
+            let second = scope.spawn(|| turn(&watch).map(drop));
+            std::thread::sleep(2 * LOOK);
+            assert!(!second.is_finished(), "it waits");
+            watch.cancel();
+            assert!(matches!(second.join().expect("its result"), Err(ProjectError::Cancelled)));
+        });
+        drop(first);
+        // Control: nobody is cancelled.
+        assert!(turn(&Watch::default()).is_ok());
     }
 }

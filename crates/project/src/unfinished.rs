@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use crate::date;
-use lovelock_record::{UnfinishedKind, claim, has_older, is_unfinished, tidy_finished, unfinished_outs};
+use lovelock_record::{UnfinishedKind, claim, has_left, has_older, tidy_finished, unfinished_outs};
 use serde::{Deserialize, Serialize};
 
 use crate::Project;
@@ -76,18 +76,18 @@ pub struct Recordings {
 pub struct Running {
     path: PathBuf,
     out: PathBuf,
+    since: SystemTime,
     /// Locked as long as it is open.
     _file: File,
 }
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // A take that could not be written to its end, as on a full disk, is offered like one that a crash left.
-        if UnfinishedKind::of(&self.out) == Some(UnfinishedKind::Take) && is_unfinished(&self.out) {
-            return;
+        // One that could not be written to its end, as on a full disk, is offered like one that a crash left.
+        if !has_left(&self.out, self.since) {
+            // A note that stays is not listed unless the recording has left something.
+            let _ = fs::remove_file(&self.path);
         }
-        // One that stays is not listed unless the recording has left something.
-        let _ = fs::remove_file(&self.path);
     }
 }
 
@@ -140,7 +140,8 @@ impl Recordings {
         let name = crc32fast::hash(job.out.as_os_str().as_encoded_bytes());
         let path = folder.join(format!("{}-{name:08x}-{}.{EXTENSION}", job.since_ms, std::process::id()));
         let mut file = claim(&path).ok()?;
-        let running = Running { path, out: job.out.clone(), _file: file.try_clone().ok()? };
+        let running =
+            Running { path, out: job.out.clone(), since: job.since(), _file: file.try_clone().ok()? };
         file.write_all(&serde_json::to_vec(job).ok()?).ok()?;
         Some(running)
     }
@@ -313,11 +314,23 @@ mod tests {
             recordings.interrupted().into_iter().map(|work| (work.job.out, work.job.since_ms)).collect()
         };
         let (take, cut) = (at("dance.take"), at("dance-cut1.take"));
-        // Control: a take that ended well leaves no note, and neither does a film that failed.
+        // Control: a take that ended well leaves no note, and neither does a recording that put back what an earlier one had left.
         fail("dance.take", 1);
-        fs::write(at("film.mp4.partial"), b"x").expect("a file");
-        fail("film.mp4", 1);
+        fs::create_dir(at("frames")).expect("a folder");
+        for left in ["film.mp4.partial", "frames/manifest.partial"] {
+            fs::write(at(left), b"x").expect("a file");
+        }
+        let later = date::unix_ms(date::now()) + 3_600_000;
+        for out in ["film.mp4", "frames"] {
+            fail(out, later);
+        }
         assert_eq!(notes(), 0);
+        for (out, left) in [("film.mp4", "film.mp4.partial"), ("frames", "frames/manifest.partial")] {
+            fail(out, 1);
+            assert_eq!(offered(), [(at(out), 1)]);
+            fs::remove_file(at(left)).expect("removed");
+            assert_eq!((offered().len(), notes()), (0, 0));
+        }
         fs::write(at("dance.take.part"), b"x").expect("a file");
         fail("dance.take", 2);
         assert_eq!(offered(), [(take.clone(), 2)]);

@@ -12,7 +12,7 @@ pub enum RecordError {
         /// The whole sentence: what was found and what is valid.
         what: String,
     },
-    /// A file or folder could not be created, written or renamed. The unfinished file has been removed.
+    /// A file or folder could not be created, written or renamed. What can be kept of an unfinished one is left.
     #[error("{}: could not {action}: {source}", path.display())]
     Io {
         /// The output as the user named it (not the `.partial` beside it).

@@ -28,18 +28,24 @@ pub(crate) fn open_file(partial: &Path) -> io::Result<Box<dyn Medium>> {
     Ok(Box::new(file))
 }
 
-/// An unfinished file. If it is dropped before [`PartialFile::commit`], the file is removed.
+/// An unfinished file. If it is dropped before [`PartialFile::commit`], the file is removed, unless it shall stay.
 pub(crate) struct PartialFile {
     target: PathBuf,
     partial: PathBuf,
     medium: Option<BufWriter<Box<dyn Medium>>>,
+    stays: bool,
 }
 
 impl PartialFile {
     pub(crate) fn create(target: &Path, opener: &Opener) -> io::Result<Self> {
         let partial = partial_path(target);
         let medium = BufWriter::with_capacity(1 << 16, opener(&partial)?);
-        Ok(Self { target: target.to_owned(), partial, medium: Some(medium) })
+        Ok(Self { target: target.to_owned(), partial, medium: Some(medium), stays: false })
+    }
+
+    /// Says whether the file stays if it is dropped, because what is in it can be used.
+    pub(crate) fn set_stays(&mut self, stays: bool) {
+        self.stays = stays;
     }
 
     /// Renames the file to its final name. With `durable` it waits for the disk first, so that after a power failure a file with
@@ -94,7 +100,9 @@ impl Drop for PartialFile {
         // After a commit the partial name no longer exists, or belongs to another recording. Errors of the removal cannot be
         // reported from here.
         if self.medium.is_some() {
-            let _ = fs::remove_file(&self.partial);
+            if !self.stays {
+                let _ = fs::remove_file(&self.partial);
+            }
             self.close();
         }
     }

@@ -4,10 +4,11 @@ use std::cmp::Reverse;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use crate::claim::claim;
 use crate::film::tables;
-use crate::partial::free_name;
+use crate::partial::{free_name, partial_path};
 use crate::sequence;
 use crate::take::{cut_takes, part_path};
 use crate::{OutputKind, RecordError, TAKE_EXTENSION, TakeReader};
@@ -60,9 +61,21 @@ pub fn is_unfinished(out: &Path) -> bool {
     match UnfinishedKind::of(out) {
         Some(UnfinishedKind::Film) => tables::is_left(out),
         Some(UnfinishedKind::Sequence) => sequence::is_left(out),
-        Some(UnfinishedKind::Take) => is_take_left(&part_path(out)),
+        Some(UnfinishedKind::Take) => is_left(&part_path(out)),
         None => false,
     }
+}
+
+/// Whether a recording to `out` that began at `since`, and has ended, left something of its own: it failed, as on a full disk.
+pub fn has_left(out: &Path, since: SystemTime) -> bool {
+    let written = match UnfinishedKind::of(out) {
+        Some(UnfinishedKind::Film) => partial_path(out),
+        Some(UnfinishedKind::Sequence) => sequence::journal_path(out),
+        // One that was left before has another name by now.
+        Some(UnfinishedKind::Take) | None => return is_unfinished(out),
+    };
+    let modified = || fs::metadata(&written).and_then(|data| data.modified());
+    is_left(&written) && modified().is_ok_and(|modified| modified >= since)
 }
 
 /// Whether a film is set aside that was left of `out` before it was recorded again. If that was interrupted too, the one that is aside can be
@@ -118,7 +131,8 @@ pub fn keep_unfinished(out: &Path) -> Result<Option<Kept>, RecordError> {
     }
 }
 
-/// Removes what an interrupted recording to `out` left. Complete images of a sequence stay, and so does an older film.
+/// Removes what an interrupted recording to `out` left. Images that a manifest lists, or listed before it, stay, and so does an
+/// older film.
 ///
 /// # Errors
 /// If another program writes it, or it cannot be removed.
@@ -139,10 +153,10 @@ pub fn tidy_finished(out: &Path) {
     }
 }
 
-/// Whether an interrupted recording left the unfinished take. One that is being recorded is not left.
-fn is_take_left(part: &Path) -> bool {
+/// Whether a recording left the unfinished file. One that is being recorded is not left.
+fn is_left(file: &Path) -> bool {
     // A claim would create a file that is missing.
-    part.exists() && !claim(part).is_err_and(|error| error.kind() == io::ErrorKind::ResourceBusy)
+    file.exists() && !claim(file).is_err_and(|error| error.kind() == io::ErrorKind::ResourceBusy)
 }
 
 fn discard_take(part: &Path) -> io::Result<()> {
@@ -392,7 +406,7 @@ mod tests {
 
     #[test]
     fn takes_whose_files_were_renamed_are_found_by_the_name_that_was_recorded_again() {
-        use std::time::{Duration, SystemTime};
+        use std::time::Duration;
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         let (take, part) = (at("dance ü.take"), at("dance ü.take.part"));
@@ -429,8 +443,8 @@ mod tests {
         names
     }
 
-    /// A sequence of which `count` images have their names.
-    fn begun(frames: &Path, count: u32) -> SequenceWriter {
+    /// A sequence that continues what is in the folder.
+    fn sequence(frames: &Path) -> Result<SequenceWriter, RecordError> {
         let settings = SequenceSettings {
             width: SIDE,
             height: SIDE,
@@ -441,7 +455,12 @@ mod tests {
             resume: true,
             settings: serde_json::json!({}),
         };
-        let mut writer = SequenceWriter::create(frames, settings).unwrap();
+        SequenceWriter::create(frames, settings)
+    }
+
+    /// A sequence of which `count` images have their names.
+    fn begun(frames: &Path, count: u32) -> SequenceWriter {
+        let mut writer = sequence(frames).unwrap();
         (0..count).for_each(|frame| writer.push(&picture(frame)).unwrap());
         wait_for(|| {
             // With the journal.
@@ -469,6 +488,31 @@ mod tests {
         // Control: a finished folder is left alone.
         discard_unfinished(kept.path()).unwrap();
         assert_eq!(fs::read_dir(kept.path()).unwrap().count(), 7);
+    }
+
+    #[test]
+    fn a_sequence_that_cannot_be_continued_keeps_the_images_of_the_interrupted_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let frames = folder.path().join("frames");
+        let writer = begun(&frames, 3);
+        let left = left_of(&frames);
+        drop(writer);
+        // Nothing can be written beside the journal, as on a full disk.
+        let blocked = left.path().join("manifest.partial.partial");
+        fs::create_dir(&blocked).unwrap();
+        sequence(left.path()).unwrap_err();
+        fs::remove_dir(&blocked).unwrap();
+        // An image that another thread wrote is listed behind a line that is not whole.
+        let journal = left.path().join("manifest.partial");
+        let lines = fs::read_to_string(&journal).unwrap();
+        let (head, images) = lines.split_once('\n').unwrap();
+        fs::write(&journal, format!("{head}\n{{\"number\": 7\n{images}")).unwrap();
+        assert_eq!(keep_unfinished(left.path()).unwrap().expect("images").frames, 3);
+        // Control: a folder in which nothing was recorded is left as it was.
+        let empty = tempfile::tempdir().unwrap();
+        fs::create_dir(empty.path().join("manifest.partial.partial")).unwrap();
+        sequence(empty.path()).unwrap_err();
+        assert_eq!(names(empty.path()), ["manifest.partial.partial"]);
     }
 
     #[test]
@@ -510,7 +554,8 @@ mod tests {
         // Killed when all was written but the journal was there, with files that have no name yet, and one of the user.
         let leave = || {
             fs::write(at("manifest.partial"), &journal).unwrap();
-            for name in ["frame_000003.png.partial", "manifest.json.partial", "notes.partial"] {
+            let begun = ["frame_000003.png.partial", "manifest.json.partial", "manifest.partial.partial"];
+            for name in begun.into_iter().chain(["notes.partial"]) {
                 fs::write(at(name), b"x").unwrap();
             }
         };
@@ -518,6 +563,19 @@ mod tests {
         assert_eq!(keep_unfinished(&frames).unwrap().expect("images").frames, 3);
         assert!(read_manifest(&frames).unwrap().complete);
         assert_eq!(names(&frames), [&whole[..], &["notes.partial".to_owned()]].concat());
+        // Whole, and kept in part before it was to be continued.
+        for complete in [true, false] {
+            let manifest = fs::read_to_string(at("manifest.json")).unwrap();
+            let marked = manifest.replace("\"complete\": true", &format!("\"complete\": {complete}"));
+            fs::write(at("manifest.json"), marked).unwrap();
+            leave();
+            discard_unfinished(&frames).unwrap();
+            assert_eq!(read_manifest(&frames).unwrap().complete, complete);
+            let rest = [&whole[..], &["notes.partial".to_owned()]].concat();
+            assert_eq!(names(&frames), rest, "a whole sequence and its notes stay");
+        }
+        // Control: one that has no manifest yet goes.
+        fs::remove_file(at("manifest.json")).unwrap();
         leave();
         discard_unfinished(&frames).unwrap();
         assert_eq!(names(&frames), ["notes.partial"]);

@@ -13,7 +13,7 @@ use lovelock_render::{CpuRenderer, DeviceImages, Image, Picture};
 use crate::latest::{Job, LatestJob};
 use crate::scene::SurroundingsLoader;
 use crate::take::{CurveInputs, TakePlayer};
-use crate::threads::lower_priority;
+use crate::threads::{background_worker, lower_priority};
 use crate::window_device::WindowDevice;
 
 /// Which thumbnails to render.
@@ -118,11 +118,7 @@ impl Worker {
     fn run(mut self) {
         lower_priority();
         // One thread only, because the window is more important than thumbnails.
-        let alone = rayon::ThreadPoolBuilder::new()
-            .num_threads(1)
-            .thread_name(|_| "filmstrip worker".to_owned())
-            .start_handler(|_| lower_priority())
-            .build();
+        let alone = background_worker("filmstrip");
         let mut renderer = CpuRenderer::default();
         while let Some(job) = self.jobs.next() {
             let Job::Do(request) = job else {
@@ -137,8 +133,8 @@ impl Worker {
                 catch_unwind(AssertUnwindSafe(|| self.draw(&request, &mut renderer)))
             };
             let drawn = match &alone {
-                Ok(alone) => alone.install(draw),
-                Err(_) => draw(),
+                Some(alone) => alone.install(draw),
+                None => draw(),
             };
             match drawn {
                 Ok(Ok(())) => {}

@@ -10,7 +10,7 @@ use lovelock_project::files::Access;
 use lovelock_project::styles::{OwnStyle, OwnStyles, Style};
 use lovelock_render::Backend;
 use lovelock_session::latest::LatestJob;
-use lovelock_session::threads::lower_priority;
+use lovelock_session::threads::{background_worker, lower_priority};
 
 /// What the thread has found.
 pub(super) enum Found {
@@ -81,7 +81,7 @@ impl Worker {
     fn run(self) {
         lower_priority();
         // One thread only, because the window is more important than pictures of styles.
-        let alone = rayon_alone();
+        let alone = background_worker("own styles");
         while self.jobs.next().is_some() {
             // After a panic these pictures are missing, which is acceptable.
             let look = || drop(catch_unwind(AssertUnwindSafe(|| self.look())));
@@ -154,13 +154,4 @@ impl Worker {
         self.found.lock().unwrap_or_else(PoisonError::into_inner).push(found);
         (self.on_found)();
     }
-}
-
-fn rayon_alone() -> Option<rayon::ThreadPool> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .thread_name(|_| "own styles worker".to_owned())
-        .start_handler(|_| lower_priority())
-        .build()
-        .ok()
 }

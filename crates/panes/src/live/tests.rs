@@ -361,7 +361,7 @@ fn niceness() -> (Option<i32>, i32) {
     };
     let tasks = std::fs::read_dir("/proc/self/task").expect("threads").flatten();
     let seen = tasks.map(|task| of(&task.path()));
-    let own = seen.filter(|(name, _)| name == "compare" || name.starts_with("pane worker"));
+    let own = seen.filter(|(name, _)| name == "compare" || name.starts_with("pane "));
     let mine = of(std::path::Path::new("/proc/thread-self")).1;
     (own.filter_map(|(_, nice)| nice).min(), mine.expect("this thread"))
 }

@@ -12,7 +12,7 @@ use super::note;
 use super::owner::Owner;
 use super::reader::{Contents, owner_in};
 use crate::error::ProjectError;
-use crate::files::canonical;
+use crate::files::{canonical, write_whole};
 use crate::history::History;
 use crate::state_folder::state_folder;
 
@@ -71,7 +71,7 @@ impl Journals {
         for pointer in self.files(POINTER) {
             let beside = fs::read_to_string(&pointer).map(PathBuf::from);
             let gone =
-                beside.is_ok_and(|beside| self.set_aside_dead(&beside).is_ok_and(|aside| !aside.is_busy()));
+                beside.is_ok_and(|beside| self.set_aside_dead(&beside).is_ok_and(|aside| !aside.stays()));
             if gone {
                 let _ = fs::remove_file(&pointer);
             }
@@ -105,7 +105,7 @@ impl Journals {
     }
 
     /// Moves a journal that no program writes to the folder, if it holds unsaved changes; otherwise removes it. One that can only be
-    /// read is copied, and stays.
+    /// read is copied, and stays. One of a newer version stays, too.
     ///
     /// # Errors
     /// If it cannot be moved or copied.
@@ -126,9 +126,11 @@ impl Journals {
         let is_in_folder = journal.parent() == self.folder();
         // One in the folder of a project names it. A foreign one that does not is not trusted with the files in it.
         let is_own = |contents: &Contents| is_in_folder || contents.last.project.is_some();
-        let contents =
-            Contents::read(&mut file)?.filter(|contents| contents.last.modified && is_own(contents));
-        let Some(contents) = contents else {
+        let found = match Contents::read(&mut file) {
+            Err(error) if error.kind() == io::ErrorKind::Unsupported => return Ok(Aside::Newer),
+            found => found?,
+        };
+        let Some(contents) = found.filter(|contents| contents.last.modified && is_own(contents)) else {
             if !stays {
                 fs::remove_file(journal)?;
             }
@@ -153,10 +155,7 @@ impl Journals {
         let _ = fs::rename(picture, aside.with_extension(PICTURE));
         if stays || renamed.is_some() || fs::rename(journal, &aside).is_err() {
             // It names another project now, stays, or is on another disk.
-            let partial = aside.with_extension("partial");
-            fs::write(&partial, renamed.map_or_else(|| fs::read(journal), Ok)?)?;
-            File::open(&partial)?.sync_all()?;
-            fs::rename(&partial, &aside)?;
+            write_whole(&aside, renamed.as_deref().unwrap_or(contents.bytes())).map_err(io::Error::other)?;
             if !stays {
                 fs::remove_file(journal)?;
             }
@@ -200,11 +199,14 @@ pub(super) enum Aside {
     Moved,
     /// A program writes it.
     Busy(Owner),
+    /// A newer version of the program has written it, and can read it.
+    Newer,
 }
 
 impl Aside {
-    fn is_busy(&self) -> bool {
-        matches!(self, Self::Busy(_))
+    /// Whether it is left where it is, for another program.
+    fn stays(&self) -> bool {
+        matches!(self, Self::Busy(_) | Self::Newer)
     }
 }
 

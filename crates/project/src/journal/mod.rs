@@ -118,10 +118,11 @@ impl Journal {
 
     /// Writes everything and waits until it has reached the disk, at most `within`. Returns whether it has.
     pub fn flush(&mut self, document: &Document, within: Duration) -> bool {
-        self.follow_after(document, Duration::ZERO);
+        // What is kept back because the disk is slow is not written.
+        let is_handed_on = self.follow_after(document, Duration::ZERO).is_none();
         let (answer, answered) = sync_channel(1);
         let asked = self.to.as_ref().is_some_and(|to| to.try_send(Message::Flush(answer)).is_ok());
-        asked && answered.recv_timeout(within).unwrap_or(false)
+        is_handed_on && asked && answered.recv_timeout(within).unwrap_or(false)
     }
 
     /// What happened since the last call.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::owner::Owner;
 use super::patch::unpack;
-use super::record::{Kind, Records, append};
+use super::record::{Kind, Records, append, is_newer};
 use super::shape::{Change, Shape, Step};
 use crate::error::ProjectError;
 use crate::history::{History, HistoryMark};
@@ -48,11 +48,14 @@ impl Contents {
     /// Reads a journal up to the last change that is whole; `None` if there is none.
     ///
     /// # Errors
-    /// If the file cannot be read.
+    /// [`io::ErrorKind::Unsupported`] if it is one of a newer version; others if the file cannot be read.
     pub(super) fn read(file: &mut File) -> io::Result<Option<Self>> {
         let mut bytes = Vec::new();
         file.rewind()?;
         file.take(LONGEST).read_to_end(&mut bytes)?;
+        if is_newer(&bytes) {
+            return Err(io::Error::new(io::ErrorKind::Unsupported, "a newer version has written it"));
+        }
         Ok(Self::of(bytes))
     }
 
@@ -80,6 +83,11 @@ impl Contents {
             }
         }
         Some(Self { owner, last: last?, shape, end, bytes })
+    }
+
+    /// The bytes of the journal. Some systems let no other handle read a locked file.
+    pub(super) fn bytes(&self) -> &[u8] {
+        &self.bytes
     }
 
     /// The bytes of a journal that holds the same and names another project.

@@ -10,6 +10,11 @@
 /// The first bytes of a journal; the digit changes when old programs cannot read new journals.
 pub(super) const MAGIC: &[u8; 8] = b"LLJOURN1";
 
+/// Whether bytes are a journal whose version this program cannot read.
+pub(super) fn is_newer(bytes: &[u8]) -> bool {
+    bytes.first_chunk::<8>().is_some_and(|magic| magic[..7] == MAGIC[..7] && magic[7] > MAGIC[7])
+}
+
 /// Bytes before the contents.
 const HEAD: usize = 9;
 
@@ -105,6 +110,7 @@ mod tests {
             assert!(found.iter().enumerate().all(|(k, record)| *record == (Kind::ALL[k % 3], contents[k])));
         }
         assert!(Records::of(&file[..5]).is_none() && Records::of(b"LLJOURN9").is_none());
+        assert!(is_newer(b"LLJOURN9 and more") && !is_newer(&file) && !is_newer(b"LLJOURN"));
     }
 
     #[test]

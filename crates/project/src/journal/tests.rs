@@ -299,6 +299,31 @@ fn unsaved_changes_of_a_project_that_is_opened_again_are_set_aside_and_announced
 }
 
 #[test]
+fn a_journal_of_a_newer_version_stays_and_changes_are_kept_beside_it() {
+    let place = Place::new();
+    let newer = b"LLJOURN2 and what only that version can read";
+    let state = place.folder.path().join("state/journals");
+    let (beside, inside) = (beside(&place.project()), state.join("new.1.journal"));
+    fs::create_dir_all(&state).expect("a folder");
+    for journal in [&beside, &inside] {
+        fs::write(journal, newer).expect("a journal");
+    }
+    let (mut document, mut journal) = place.open();
+    for value in [2.5, 3.5] {
+        distance(&mut document, value);
+        assert!(journal.flush(&document, WITHIN));
+    }
+    assert!(journal.events().is_empty());
+    crash(&document, journal);
+    let found = place.journals().unsaved(Some(&place.project()));
+    assert_eq!(found.len(), 1, "{:?}", place.files("state/journals"));
+    assert_eq!(found[0].history().expect("a history").project().camera.distance, 3.5);
+    for journal in [&beside, &inside] {
+        assert_eq!(fs::read(journal).expect("a journal"), newer);
+    }
+}
+
+#[test]
 fn a_journal_beside_a_project_belongs_to_the_project_where_it_lies() {
     let place = Place::new();
     let (mut document, journal) = place.open();

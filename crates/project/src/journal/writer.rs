@@ -209,7 +209,7 @@ impl Writer {
     /// Tells if another program has opened the project, once for each.
     fn look(&mut self) {
         self.looked = Stopwatch::start();
-        // Two programs that take a place at the same moment both write there, and one of the files is lost.
+        // One that was removed or replaced is written elsewhere.
         if self.project_slot().is_some_and(|slot| !is_still(&slot.file, &slot.path)) {
             self.write();
         }
@@ -239,14 +239,18 @@ impl Writer {
                 }
                 return;
             }
+            Aside::Newer => return,
             Aside::Moved => self.tell(Event::Found),
             Aside::Nothing => {}
         }
-        let Some(marked) = self.marked.clone() else { return };
-        if let Ok(slot) = self.begin(place, &marked) {
+        // One that can only be read stays.
+        let Some(marked) = self.marked.clone().filter(|_| !place.exists()) else { return };
+        if let Ok(slot) = self.begin(place, &marked, take_name) {
             self.met = None;
-            if let Some(before) = self.slot.replace(slot) {
-                // All of it is in the new one.
+            // All of the one before is in the new one. A file of another program may have its name by now.
+            if let Some(before) = self.slot.replace(slot)
+                && is_still(&before.file, &before.path)
+            {
                 let _ = fs::remove_file(&before.path);
                 note::forget(&before.path);
             }
@@ -319,7 +323,7 @@ impl Writer {
         let grown = self.slot.as_ref().is_some_and(|slot| slot.bytes[1] > slot.bytes[0] * 3 + GROWS_BY);
         if grown && let Some(slot) = &self.slot {
             let path = slot.path.clone();
-            if let Ok(slot) = self.begin(path, &marked) {
+            if let Ok(slot) = self.begin(path, &marked, replace) {
                 self.slot = Some(slot);
             }
         }
@@ -354,9 +358,12 @@ impl Writer {
         let second = self.journals.second_place(project, &self.owner);
         let mut is_busy = false;
         while let Some(place) = places.pop() {
-            let is_own = self.broken.as_ref().is_some_and(|broken| broken.path == place);
+            let is_own = self
+                .broken
+                .as_ref()
+                .is_some_and(|broken| broken.path == place && is_still(&broken.file, &broken.path));
             let opened = match self.journals.set_aside_dead(&place) {
-                Ok(Aside::Busy(_)) if is_own => self.begin(place.clone(), marked),
+                Ok(Aside::Busy(_)) if is_own => self.begin(place.clone(), marked, replace),
                 Ok(Aside::Busy(owner)) => {
                     // Not again when it tries again after a failure.
                     let is_met =
@@ -364,16 +371,16 @@ impl Writer {
                     if !is_busy && !is_met && owner != self.owner {
                         self.meet(&place, owner);
                     }
-                    is_busy = true;
-                    places = second.clone().into_iter().filter(|second| *second != place).collect();
-                    continue;
+                    Err(io::ErrorKind::ResourceBusy.into())
                 }
+                Ok(Aside::Newer) => Err(io::ErrorKind::AlreadyExists.into()),
                 Ok(Aside::Moved) => {
                     self.tell(Event::Found);
-                    self.begin(place.clone(), marked)
+                    self.begin(place.clone(), marked, take_name)
                 }
-                Ok(Aside::Nothing) => self.begin(place.clone(), marked),
-                Err(error) => Err(error),
+                Ok(Aside::Nothing) => self.begin(place.clone(), marked, take_name),
+                // Its kind does not say who has the place.
+                Err(error) => Err(io::Error::other(error)),
             };
             match opened {
                 Ok(slot) => {
@@ -387,6 +394,12 @@ impl Writer {
                     self.report(elsewhere);
                     return;
                 }
+                Err(error) if is_taken(&error) => {
+                    is_busy = true;
+                    places = second.clone().into_iter().filter(|second| *second != place).collect();
+                    // A program that takes the place at this very moment is met at the next look.
+                    self.met.get_or_insert((place, Owner::default()));
+                }
                 Err(error) => {
                     failed.get_or_insert((folder_of(&place), error));
                 }
@@ -397,21 +410,31 @@ impl Writer {
         self.report(Some(Event::NotKept { folder, error: error.to_string() }));
     }
 
-    /// Begins a journal with all of the history under another name, then renames it.
-    fn begin(&self, path: PathBuf, marked: &Marked) -> io::Result<Slot> {
+    /// Begins a journal with all of the history under another name, then publishes it by [`take_name`] or [`replace`].
+    ///
+    /// # Errors
+    /// Those of [`is_taken`] if another program begins one there; others if it cannot be written.
+    fn begin(
+        &self,
+        path: PathBuf,
+        marked: &Marked,
+        publish: fn(&Path, &Path) -> io::Result<()>,
+    ) -> io::Result<Slot> {
         let project = marked.project.clone();
         let is_beside = self.journals.folder() != path.parent();
         if !is_beside && let Some(folder) = path.parent() {
-            fs::create_dir_all(folder)?;
+            fs::create_dir_all(folder).map_err(io::Error::other)?;
         }
         let (encoder, bytes) = Encoder::begin(&self.owner, &marked.history, project.as_deref())?;
         let partial = path.with_extension("journal-partial");
         let mut file = claim(&partial)?;
-        let written = file
-            .set_len(0)
-            .and_then(|()| file.write_all(&bytes))
-            .and_then(|()| file.sync_all())
-            .and_then(|()| fs::rename(&partial, &path));
+        // What a killed program left may be a journal, too, by another name: it must not be written over.
+        if file.metadata()?.len() > 0 {
+            fs::remove_file(&partial)?;
+            file = claim(&partial)?;
+        }
+        let written =
+            file.write_all(&bytes).and_then(|()| file.sync_all()).and_then(|()| publish(&partial, &path));
         if let Err(error) = written {
             // The error that matters is the first one.
             let _ = fs::remove_file(&partial);
@@ -433,10 +456,13 @@ impl Writer {
 
     /// Removes a journal: the project was saved or given up.
     fn remove(&self, slot: Slot) {
-        // What cannot be removed holds a saved state, or is offered again.
-        let _ = fs::remove_file(&slot.path);
-        note::forget(&slot.path);
-        slot.pointer.map(fs::remove_file);
+        // A file of another program may have its name by now.
+        if is_still(&slot.file, &slot.path) {
+            // What cannot be removed holds a saved state, or is offered again.
+            let _ = fs::remove_file(&slot.path);
+            note::forget(&slot.path);
+            slot.pointer.map(fs::remove_file);
+        }
         self.journals.picture(slot.project.as_deref(), &self.owner).map(fs::remove_file);
     }
 
@@ -462,4 +488,81 @@ impl Slot {
 
 fn folder_of(path: &Path) -> PathBuf {
     path.parent().map(Path::to_owned).unwrap_or_default()
+}
+
+/// Gives a journal a name that no other file has: two programs that begin at the same moment must not replace each other's.
+fn take_name(partial: &Path, path: &Path) -> io::Result<()> {
+    match fs::hard_link(partial, path) {
+        Ok(()) => fs::remove_file(partial),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(error),
+        // Not every file system has links.
+        Err(_) => fs::rename(partial, path),
+    }
+}
+
+/// Gives a journal the name of one that this program writes.
+fn replace(partial: &Path, path: &Path) -> io::Result<()> {
+    fs::rename(partial, path)
+}
+
+/// Whether another program has the place of a journal, or begins one there.
+fn is_taken(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::AlreadyExists | io::ErrorKind::ResourceBusy)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::sync_channel;
+
+    use super::super::folder::beside;
+    use super::*;
+    use crate::Project;
+    use crate::document::Document;
+
+    /// Two programs on a project with unsaved changes, whose folder has no journal yet.
+    fn two_writers(folder: &Path) -> ([Writer; 2], Marked) {
+        let project = folder.join("red hair.lovelock");
+        let mut document = Document::new(Project::default(), Some(project.clone()));
+        document.change("camera", |project| project.camera.distance = 7.0);
+        let marked = Marked { history: document.history().mark(), project: Some(project) };
+        let writer = || Writer::new(Journals::new(folder.join("state")), sync_channel(4).0, Box::new(|| ()));
+        ([writer(), writer()], marked)
+    }
+
+    #[test]
+    fn of_two_programs_that_begin_a_journal_at_the_same_moment_one_has_the_place() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let ([first, second], marked) = two_writers(folder.path());
+        let path = beside(marked.project.as_deref().expect("a file"));
+        let slot = first.begin(path.clone(), &marked, take_name).expect("begun");
+        // The second one has looked before the first one began.
+        let error = second.begin(path.clone(), &marked, take_name).err().expect("it is taken");
+        assert!(is_taken(&error) && is_still(&slot.file, &path), "{error}");
+        assert!(!path.with_extension("journal-partial").exists());
+        // Its own one it replaces.
+        let slot = first.begin(path.clone(), &marked, replace).expect("begun");
+        assert!(is_still(&slot.file, &path));
+        // What has another's name by now is not removed.
+        fs::remove_file(&path).expect("removed");
+        fs::write(&path, "another").expect("a file");
+        first.remove(slot);
+        assert_eq!(path.exists(), cfg!(unix));
+    }
+
+    #[test]
+    fn a_journal_that_a_killed_program_left_by_two_names_is_not_written_over() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let ([first, second], marked) = two_writers(folder.path());
+        let path = beside(marked.project.as_deref().expect("a file"));
+        drop(first.begin(path.clone(), &marked, take_name).expect("begun"));
+        fs::hard_link(&path, path.with_extension("journal-partial")).expect("a link");
+        assert!(matches!(second.journals.set_aside_dead(&path), Ok(Aside::Moved)));
+        let _slot = second.begin(path.clone(), &marked, take_name).expect("begun");
+        let found = second.journals.unsaved(None);
+        let distances: Vec<f32> = found
+            .iter()
+            .map(|unsaved| unsaved.history().expect("a history").project().camera.distance)
+            .collect();
+        assert_eq!(distances, [7.0]);
+    }
 }

@@ -144,7 +144,8 @@ pub struct FilmReport {
     pub duration_secs: f64,
 }
 
-/// A film that is being written. [`FilmWriter::finish`] completes it; if it is dropped before, its file is removed.
+/// A film that is being written. [`FilmWriter::finish`] completes it; if it is dropped before, its file is removed. After an error, what plays
+/// is left as by a crash: see [`crate::keep_unfinished`].
 pub struct FilmWriter {
     path: PathBuf,
     settings: FilmSettings,
@@ -204,8 +205,7 @@ impl FilmWriter {
     ///
     /// # Errors
     /// [`RecordError::FrameSize`] for a wrong number of bytes, after which recording can continue. [`RecordError::Io`] for
-    /// errors such as a full disk, [`RecordError::Encoder`], and [`RecordError::Stopped`] after either; the unfinished file
-    /// has then been removed.
+    /// errors such as a full disk, [`RecordError::Encoder`], and [`RecordError::Stopped`] after either.
     pub fn push(&mut self, rgba: &[u8]) -> Result<(), RecordError> {
         check_frame(rgba, self.settings.width, self.settings.height)?;
         let Some(jobs) = &self.jobs else {

@@ -152,7 +152,7 @@ impl Drop for Before {
     }
 }
 
-/// The tables of a film that is being written. Their file is removed when it is dropped.
+/// The tables of a film that is being written. Their file is removed when it is dropped, unless the images stay.
 pub(super) struct TablesFile {
     path: PathBuf,
     new: PathBuf,
@@ -191,8 +191,10 @@ impl TablesFile {
 
 impl Drop for TablesFile {
     fn drop(&mut self) {
-        // The film is complete or removed.
-        let _ = fs::remove_file(&self.path);
+        // Without its ending, the name is that of the images.
+        if !self.path.with_extension("").exists() {
+            let _ = fs::remove_file(&self.path);
+        }
     }
 }
 

@@ -22,7 +22,7 @@ pub(super) enum Job {
     Finish,
 }
 
-/// The unfinished film. Its file is removed when it is dropped.
+/// The unfinished film. When it is dropped, its file stays if the recording failed and there are tables with which it plays.
 pub(super) struct Film {
     path: PathBuf,
     settings: FilmSettings,
@@ -74,6 +74,7 @@ impl Film {
                 Job::Finish => return self.finish(&encoder).map(Some),
             }
         }
+        self.writer.medium().set_stays(false);
         Ok(None)
     }
 
@@ -92,8 +93,10 @@ impl Film {
         self.add_sound()?;
         if self.tables.is_due() {
             let tables = self.writer.tables_so_far(encoder.config());
-            // The film itself does not need them.
-            let _ = tables.and_then(|tables| self.tables.write(&tables));
+            // The film itself does not need them. With them, a full disk costs only the images behind them.
+            if tables.and_then(|tables| self.tables.write(&tables)).is_ok() {
+                self.writer.medium().set_stays(true);
+            }
         }
         Ok(())
     }

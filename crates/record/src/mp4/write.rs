@@ -64,6 +64,11 @@ impl<W: Write + Seek> Mp4Writer<W> {
         Ok(Self { out, track, mdat_start, position, sizes, chunks, keys, sound: None })
     }
 
+    /// What the film is written to.
+    pub(crate) fn medium(&mut self) -> &mut W {
+        &mut self.out
+    }
+
     /// Gives the film a track of sound.
     pub(crate) fn add_sound(&mut self, track: SoundTrack) {
         self.sound = Some(track);

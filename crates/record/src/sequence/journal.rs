@@ -1,7 +1,7 @@
 //! The journal of an unfinished sequence: its settings and its complete frames.
 //!
-//! It stays in the folder while frames are written, and also after a crash. Each line is JSON: first a manifest without
-//! frames, then one line per frame, just before the frame gets its final name.
+//! It stays in the folder while frames are written, and also after a crash. Each line is JSON: first a manifest with the frames that a
+//! manifest listed before and that are kept, then one line per frame, just before the frame gets its final name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -13,6 +13,7 @@ use serde_json::Value;
 use crate::RecordError;
 use crate::claim::claim;
 use crate::manifest::{Manifest, ManifestFrame, read_manifest};
+use crate::partial::partial_path;
 
 /// Name of the journal in the folder.
 pub(super) const JOURNAL_NAME: &str = "manifest.partial";
@@ -26,6 +27,21 @@ pub(super) struct Journal {
     file: File,
     /// Whether the file was empty.
     is_new: bool,
+}
+
+/// What an earlier recording left.
+pub(super) struct Recorded {
+    /// All its frames.
+    pub manifest: Manifest,
+    /// How many of the first ones a manifest listed before that recording, or lists.
+    pub listed: usize,
+}
+
+impl Recorded {
+    /// The frames that a manifest listed before that recording, or lists.
+    pub fn listed(&self) -> &[ManifestFrame] {
+        &self.manifest.frames[..self.listed]
+    }
 }
 
 impl Journal {
@@ -42,21 +58,24 @@ impl Journal {
     }
 
     /// What an earlier recording left in the folder: its journal or, if it ended regularly, its manifest.
-    pub fn earlier(&mut self, folder: &Path) -> Option<Manifest> {
-        self.recorded().or_else(|| read_manifest(folder).ok())
+    pub fn earlier(&mut self, folder: &Path) -> Option<Recorded> {
+        self.recorded().or_else(|| {
+            let manifest = read_manifest(folder).ok()?;
+            Some(Recorded { listed: manifest.frames.len(), manifest })
+        })
     }
 
     /// What the journal itself says.
-    pub fn recorded(&mut self) -> Option<Manifest> {
+    pub fn recorded(&mut self) -> Option<Recorded> {
         let mut text = Vec::new();
         let read = self.file.rewind().and_then(|()| (&self.file).take(MAX_BYTES).read_to_end(&mut text));
         read.ok().and_then(|_| parse(&text))
     }
 
-    /// Starts a new journal with the frames that are kept.
+    /// Starts a new journal. `head` has the frames that a manifest listed and that are kept, `kept` the others.
     ///
     /// # Errors
-    /// Errors such as a full disk.
+    /// Errors such as a full disk. The earlier journal then stays as it was.
     pub fn begin(&mut self, head: &Manifest, kept: &BTreeMap<u64, ManifestFrame>) -> io::Result<()> {
         let mut text = serde_json::to_vec(head)?;
         text.push(b'\n');
@@ -64,10 +83,20 @@ impl Journal {
             text.extend(serde_json::to_vec(frame)?);
             text.push(b'\n');
         }
-        self.file.set_len(0)?;
-        self.file.rewind()?;
-        self.file.write_all(&text)?;
-        self.file.sync_all()
+        // Under another name first: until the new one is whole, nothing else lists the images of the earlier recording.
+        let new = partial_path(&self.path);
+        let mut file = claim(&new)?;
+        let written = file
+            .set_len(0)
+            .and_then(|()| file.write_all(&text))
+            .and_then(|()| file.sync_all())
+            .and_then(|()| fs::rename(&new, &self.path));
+        if let Err(error) = written {
+            let _ = fs::remove_file(&new);
+            return Err(error);
+        }
+        self.file = file;
+        Ok(())
     }
 
     /// Adds a frame that is about to get its final name.
@@ -94,12 +123,13 @@ impl Journal {
     }
 }
 
-/// The manifest in a journal. An incomplete last line is ignored.
-fn parse(text: &[u8]) -> Option<Manifest> {
+/// What a journal says. Lines that are not whole, as a full disk leaves them, are ignored.
+fn parse(text: &[u8]) -> Option<Recorded> {
     let mut lines = text.split_inclusive(|&byte| byte == b'\n').filter(|line| line.ends_with(b"\n"));
     let mut manifest: Manifest = serde_json::from_slice(lines.next()?).ok()?;
-    manifest.frames = lines.map_while(|line| serde_json::from_slice(line).ok()).collect();
-    Some(manifest)
+    let listed = manifest.frames.len();
+    manifest.frames.extend(lines.filter_map(|line| serde_json::from_slice::<ManifestFrame>(line).ok()));
+    Some(Recorded { manifest, listed })
 }
 
 /// The frames of a manifest whose files match their length and checksum.

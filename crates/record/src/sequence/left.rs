@@ -2,10 +2,10 @@
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::journal::{JOURNAL_NAME, Journal, whole_frames};
-use super::sound_file::{SOUND_NAME, remove_own};
+use super::journal::{JOURNAL_NAME, Journal, Recorded, whole_frames};
+use super::sound_file::SOUND_NAME;
 use super::{SequenceFormat, frame_name};
 use crate::RecordError;
 use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, read_manifest};
@@ -23,9 +23,14 @@ pub(super) fn write_manifest(folder: &Path, manifest: &Manifest) -> Result<(), R
     write().map_err(|error| RecordError::io(&path, "write the manifest", error))
 }
 
+/// The journal of a recording to the folder.
+pub(crate) fn journal_path(folder: &Path) -> PathBuf {
+    folder.join(JOURNAL_NAME)
+}
+
 /// Whether an interrupted recording left its journal in the folder.
 pub(crate) fn is_left(folder: &Path) -> bool {
-    folder.join(JOURNAL_NAME).exists()
+    journal_path(folder).exists()
 }
 
 /// Lists the complete images of an interrupted recording in a manifest. Returns their number.
@@ -39,10 +44,10 @@ pub(crate) fn keep_unfinished(folder: &Path) -> Result<u64, RecordError> {
     let mut journal = Journal::claim(folder)?;
     let mut count = 0;
     // A recording that has not begun its journal has changed nothing: the manifest of the one before it stays.
-    if let Some(there) = journal.recorded() {
+    if let Some(Recorded { manifest: there, .. }) = journal.recorded() {
         let frames: Vec<_> = whole_frames(folder, there.frames).into_values().collect();
         count = frames.len() as u64;
-        if count > 0 && finished(folder, &frames).is_none() {
+        if count > 0 && !finished(folder, &frames) {
             write_manifest(folder, &Manifest { frames, complete: false, ..there })?;
         }
     }
@@ -52,7 +57,8 @@ pub(crate) fn keep_unfinished(folder: &Path) -> Result<u64, RecordError> {
     Ok(count)
 }
 
-/// Removes the images and the journal of an interrupted recording.
+/// Removes the images and the journal of an interrupted recording. Images that a manifest lists, or listed before
+/// the recording, stay.
 ///
 /// # Errors
 /// If another program writes to the folder, or a file cannot be removed.
@@ -61,13 +67,19 @@ pub(crate) fn discard_unfinished(folder: &Path) -> io::Result<()> {
         return Ok(());
     }
     let mut journal = Journal::claim(folder).map_err(|error| io::Error::other(error.to_string()))?;
-    if let Some(there) = journal.recorded() {
-        let frames: Vec<_> = whole_frames(folder, there.frames).into_values().collect();
-        if let Some(whole) = finished(folder, &frames) {
-            fs::remove_file(folder.join(MANIFEST_NAME))?;
-            whole.sound.iter().for_each(|sound| remove_own(folder, sound));
+    if let Some(Recorded { manifest: mut there, listed }) = journal.recorded() {
+        let mut frames = whole_frames(folder, there.frames.split_off(listed));
+        let before: Vec<_> = whole_frames(folder, there.frames).into_values().collect();
+        if let Ok(manifest) = read_manifest(folder) {
+            // The recording was killed when it had written the manifest, or before it had changed anything.
+            for listed in manifest.frames {
+                frames.remove(&listed.number);
+            }
+        } else if !before.is_empty() {
+            let manifest = Manifest { frames: before, complete: false, ..there };
+            write_manifest(folder, &manifest).map_err(io::Error::other)?;
         }
-        for frame in frames {
+        for frame in frames.into_values() {
             // Names come from a file: only those in the folder itself are removed.
             if Path::new(&frame.file).components().count() == 1 {
                 fs::remove_file(folder.join(&frame.file))?;
@@ -80,9 +92,9 @@ pub(crate) fn discard_unfinished(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// The manifest, if it already lists these images as a whole sequence: the recording was killed before it could remove its journal.
-fn finished(folder: &Path, frames: &[ManifestFrame]) -> Option<Manifest> {
-    read_manifest(folder).ok().filter(|manifest| manifest.complete && manifest.frames == frames)
+/// Whether the manifest already lists these images as a whole sequence: the recording was killed before it could remove its journal.
+fn finished(folder: &Path, frames: &[ManifestFrame]) -> bool {
+    read_manifest(folder).is_ok_and(|manifest| manifest.complete && manifest.frames == frames)
 }
 
 /// Removes the files of a recording that had no final name yet. The caller has locked the folder, so nobody writes them.
@@ -90,7 +102,7 @@ fn remove_partial_files(folder: &Path) {
     let is_ours = |name: &str| {
         let number = name.strip_prefix("frame_").and_then(|rest| rest.split('.').next()?.parse::<u64>().ok());
         let is_frame = |number| SequenceFormat::ALL.iter().any(|&format| frame_name(number, format) == name);
-        name == MANIFEST_NAME || name == SOUND_NAME || number.is_some_and(is_frame)
+        [MANIFEST_NAME, SOUND_NAME, JOURNAL_NAME].contains(&name) || number.is_some_and(is_frame)
     };
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();

@@ -8,7 +8,7 @@ mod sound_file;
 mod worker;
 
 pub use self::exr::FrameLayers;
-pub(crate) use left::{discard_unfinished, is_left, keep_unfinished};
+pub(crate) use left::{discard_unfinished, is_left, journal_path, keep_unfinished};
 pub use settings::{SequenceFormat, SequenceReport, SequenceSettings, frame_name};
 pub use sound_file::SOUND_NAME;
 pub(crate) use sound_file::remove_own;
@@ -18,8 +18,8 @@ use crate::manifest::{MANIFEST_NAME, Manifest, ManifestFrame, ManifestSound, VER
 use crate::partial::{Opener, open_file};
 use crate::sound::{SoundSource, samples_of};
 use crate::{FrameRate, RecordError};
-use journal::Journal;
-use std::collections::BTreeMap;
+use journal::{Journal, Recorded};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -138,6 +138,9 @@ impl SequenceWriter {
         let folder = self.folder.clone();
         let mut journal = Journal::claim(&folder)?;
         let there = journal.earlier(&folder);
+        let before: BTreeSet<u64> =
+            there.iter().flat_map(Recorded::listed).map(|frame| frame.number).collect();
+        let there = there.map(|there| there.manifest);
         if let Some(there) = &there {
             self.old_sound.clone_from(&there.sound);
             self.old = Some(there.clone());
@@ -160,8 +163,11 @@ impl SequenceWriter {
                 }
             }
         }
-        if let Err(error) = journal.begin(&head, &self.kept) {
-            journal.remove();
+        let (listed, kept): (BTreeMap<_, _>, BTreeMap<_, _>) =
+            self.kept.clone().into_iter().partition(|(number, _)| before.contains(number));
+        let head = Manifest { frames: listed.into_values().collect(), ..head };
+        if let Err(error) = journal.begin(&head, &kept) {
+            journal.release();
             return Err(RecordError::io(&folder, "start a sequence in the folder", error));
         }
         let manifest_path = folder.join(MANIFEST_NAME);

@@ -1,7 +1,7 @@
 use super::{FrameLayers, SequenceFormat, SequenceSettings, SequenceWriter, frame_name};
 use crate::partial::Opener;
 use crate::partial::failing::small_disk;
-use crate::{Manifest, RecordError, read_manifest};
+use crate::{Manifest, RecordError, discard_unfinished, keep_unfinished, read_manifest};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -363,4 +363,42 @@ fn one_recording_at_a_time_writes_to_a_folder_or_a_film() {
     );
     first.push(&[90; 32 * 32 * 4]).unwrap();
     assert_eq!(first.finish().unwrap().frames, 1);
+}
+
+#[test]
+fn images_of_a_sequence_that_was_continued_stay_when_what_a_crash_left_is_discarded() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let journal = at.join("manifest.partial");
+    let resume = || SequenceWriter::create(at, SequenceSettings { resume: true, ..settings() }).unwrap();
+    let mut writer = resume();
+    (0..3).for_each(|frame| writer.push(&picture(frame)).unwrap());
+    writer.finish().unwrap();
+    let mut writer = resume();
+    let head = fs::read(&journal).unwrap();
+    (0..3).for_each(|_| writer.keep_next());
+    (3..5).for_each(|frame| writer.push(&picture(frame)).unwrap());
+    writer.finish().unwrap();
+    let whole = read_manifest(at).unwrap();
+    // What a crash leaves just before the end.
+    let crash = |text: &[u8]| {
+        fs::write(&journal, text).unwrap();
+        fs::remove_file(at.join("manifest.json")).unwrap();
+    };
+    let lines: String =
+        whole.frames[3..].iter().map(|frame| serde_json::to_string(frame).unwrap() + "\n").collect();
+    let text = [&head[..], lines.as_bytes()].concat();
+    crash(&text);
+    assert_eq!(keep_unfinished(at).unwrap().expect("images").frames, 5);
+    // A second crash, when it was continued again: the images of the first one are still not listed.
+    crash(&text);
+    let writer = resume();
+    let again = fs::read(&journal).unwrap();
+    assert_eq!(again, text);
+    drop(writer);
+    crash(&again);
+    discard_unfinished(at).unwrap();
+    let left = read_manifest(at).unwrap();
+    assert_eq!((left.complete, &left.frames[..]), (false, &whole.frames[..3]));
+    assert_eq!(files(at).len(), 4, "three images and their manifest");
 }

@@ -71,10 +71,6 @@ pub(super) fn claim(target: &Path) -> Result<File, TakeError> {
     match OpenOptions::new().read(true).append(true).open(&part) {
         Ok(old) => {
             lock(&old, &part)?;
-            if !is_still(&old, &part) {
-                // Its writer has finished and renamed it meanwhile, and another recording may have started.
-                return Err(TakeError::Busy { path: part });
-            }
             set_aside(&old, target, &part)?;
         }
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
@@ -92,10 +88,12 @@ pub(super) fn claim(target: &Path) -> Result<File, TakeError> {
     Ok(file)
 }
 
+/// Locks the unfinished file. Meanwhile its writer may have finished it, or another program may have removed one that was still empty: then it
+/// no longer has the name, which may belong to another recording.
 fn lock(file: &File, part: &Path) -> Result<(), TakeError> {
     match file.try_lock() {
-        Ok(()) => Ok(()),
-        Err(TryLockError::WouldBlock) => Err(TakeError::Busy { path: part.to_owned() }),
+        Ok(()) if is_still(file, part) => Ok(()),
+        Ok(()) | Err(TryLockError::WouldBlock) => Err(TakeError::Busy { path: part.to_owned() }),
         // Some network file systems support no locks; only the name then keeps two writers apart.
         Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
         Err(TryLockError::Error(error)) => Err(TakeError::io(part, "lock", error)),
@@ -137,4 +135,21 @@ pub(super) fn publish(part: &Path, target: &Path) -> io::Result<()> {
 pub(super) fn sync_folder(path: &Path) {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_was_removed_before_it_was_locked_is_not_recorded_to() {
+        let folder = tempfile::tempdir().unwrap();
+        let part = folder.path().join("dance.take.part");
+        let create = || OpenOptions::new().append(true).create_new(true).open(&part).unwrap();
+        let first = create();
+        fs::remove_file(&part).unwrap();
+        let second = create();
+        assert!(matches!(lock(&first, &part), Err(TakeError::Busy { .. })));
+        assert!(lock(&second, &part).is_ok(), "control");
+    }
 }

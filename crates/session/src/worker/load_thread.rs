@@ -16,6 +16,7 @@ use crate::aside::aside;
 use crate::memory::Held;
 use crate::scene::{LoadControl, Scene, SceneLoader, SurroundingsLoader};
 use crate::take::TakePlayer;
+use crate::threads::own_workers;
 
 /// The result of a load.
 pub(super) enum Loaded {
@@ -206,8 +207,7 @@ impl Drop for LoadThread {
 impl LoadState {
     fn run(&self, deliver: &dyn Fn(Loaded)) {
         let mut loaders = Loaders::default();
-        // A pool of its own, as that of the simulation: in the common one each layer would wait for the tiles of an image.
-        let threads = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("load {i}")).build().ok();
+        let threads = own_workers("load");
         while let Some((project, access)) = self.next() {
             let loaded = catch_unwind(AssertUnwindSafe(|| match &threads {
                 Some(threads) => threads.install(|| self.load(&mut loaders, &project, &access)),

@@ -28,6 +28,7 @@ use crate::clock::{Playback, STEP_SECS};
 use crate::engine::{Engine, LastSteps};
 use crate::scene::Scene;
 use crate::take::{TakeRecording, TakeTransport};
+use crate::threads::own_workers;
 
 /// Number of consecutive panics after which the simulation stops until something changes.
 const MAX_PANICS: u32 = 3;
@@ -89,8 +90,8 @@ impl SimulationThread {
     }
 
     pub(super) fn run(mut self) {
-        // A pool of its own: a step takes a millisecond, and in the common pool it would wait for the tiles of an image.
-        let threads = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("simulate {i}")).build().ok();
+        // A step takes a millisecond, less than the tiles of an image.
+        let threads = own_workers("simulate");
         let mut watch = Stopwatch::start();
         loop {
             let timeout = match (&self.take, &self.engine) {
