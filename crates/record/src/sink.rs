@@ -280,6 +280,13 @@ impl PictureSink {
 
     /// Cancels the recording. The file of a film or a preview is removed; complete frames of a sequence stay.
     pub fn cancel(self) {}
+
+    /// Ends a recording that cannot go on. What plays of a film is left ([`FilmWriter::leave`]), and complete frames of a sequence stay.
+    pub fn leave(self) {
+        if let Self::Film(writer) = self {
+            writer.leave();
+        }
+    }
 }
 
 #[cfg(test)]

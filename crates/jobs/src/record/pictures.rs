@@ -38,7 +38,7 @@ const MAX_TIMES: usize = 1 << 20;
 ///
 /// # Errors
 /// [`ProjectError::exit_code`] 2 for an invalid request, 1 if the work fails (no adapter, a full disk). Then no film is left under
-/// its final name, complete frames of a sequence are kept, and new empty folders are removed.
+/// its final name, but what plays of it can be kept; complete frames of a sequence are kept, and new empty folders are removed.
 pub fn record(
     project: &Project,
     request: &RecordRequest,
@@ -83,43 +83,13 @@ pub fn record(
     if let Some(sound) = sound {
         sink.set_sound(Box::new(sound)).map_err(refused)?;
     }
-    let mut begun = false;
-    let mut drawn = Drawn::default();
-    let total = frames.end - frames.start;
-    let mut tally = Tally::new((total as usize).min(MAX_TIMES));
-    let mut in_flight: Option<Begun> = None;
-    for frame in frames.clone() {
-        if sink.next_is_kept() {
-            sink.keep_next();
-            report_progress(progress, Progress::Kept { done: frame + 1 - frames.start, total })?;
-            continue;
+    let mut tally = Tally::new(((frames.end - frames.start) as usize).min(MAX_TIMES));
+    if let Err(error) = job.write(&frames, &mut dance, &mut drawer, &mut sink, &mut tally, progress) {
+        // Nobody wanted this, so what there is can be kept.
+        if !matches!(error, ProjectError::Cancelled) {
+            sink.leave();
         }
-        if !std::mem::replace(&mut begun, true) {
-            // Simulate all earlier frames of the recording, whether they are kept or not.
-            dance.begin(frames.start, job.options.instants(frame, job.fps)[0], progress)?;
-            tally.since = Stopwatch::start();
-        }
-        // While a graphics card draws this frame, the one before is written.
-        let before = std::mem::replace(&mut in_flight, job.begin(frame, &mut dance, &mut drawer)?);
-        let mut finished = None;
-        if let Some(before) = before {
-            finished = Some((before.frame, job.finish(before, &mut drawer, &mut drawn)?));
-        } else if in_flight.is_none() {
-            finished = Some((frame, job.draw(frame, &mut dance, &mut drawer, &mut drawn)?));
-        }
-        if let Some((frame, made)) = finished {
-            tally.write(&job, &drawn, made, &mut sink)?;
-            let (done, steps_per_frame) = (frame + 1 - frames.start, dance.steps_per_frame());
-            report_progress(progress, Progress::Frame { done, total, steps_per_frame })?;
-        }
-    }
-    if let Some(last) = in_flight {
-        let made = job.finish(last, &mut drawer, &mut drawn)?;
-        tally.write(&job, &drawn, made, &mut sink)?;
-        report_progress(
-            progress,
-            Progress::Frame { done: total, total, steps_per_frame: dance.steps_per_frame() },
-        )?;
+        return Err(error);
     }
     report_progress(progress, Progress::Finishing)?;
     let written = sink.finish().map_err(refused)?;
@@ -314,6 +284,56 @@ impl<'a> Job<'a> {
             OutputKind::Preview => "apng",
             OutputKind::Sequence => self.options.format.id(),
         }
+    }
+
+    /// Draws the frames and writes them.
+    fn write(
+        &self,
+        frames: &std::ops::Range<u64>,
+        dance: &mut Dance,
+        drawer: &mut Drawer,
+        sink: &mut PictureSink,
+        tally: &mut Tally,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(), ProjectError> {
+        let mut begun = false;
+        let mut drawn = Drawn::default();
+        let total = frames.end - frames.start;
+        let mut in_flight: Option<Begun> = None;
+        for frame in frames.clone() {
+            if sink.next_is_kept() {
+                sink.keep_next();
+                report_progress(progress, Progress::Kept { done: frame + 1 - frames.start, total })?;
+                continue;
+            }
+            if !std::mem::replace(&mut begun, true) {
+                // Simulate all earlier frames of the recording, whether they are kept or not.
+                dance.begin(frames.start, self.options.instants(frame, self.fps)[0], progress)?;
+                tally.since = Stopwatch::start();
+            }
+            // While a graphics card draws this frame, the one before is written.
+            let before = std::mem::replace(&mut in_flight, self.begin(frame, dance, drawer)?);
+            let mut finished = None;
+            if let Some(before) = before {
+                finished = Some((before.frame, self.finish(before, drawer, &mut drawn)?));
+            } else if in_flight.is_none() {
+                finished = Some((frame, self.draw(frame, dance, drawer, &mut drawn)?));
+            }
+            if let Some((frame, made)) = finished {
+                tally.write(self, &drawn, made, sink)?;
+                let (done, steps_per_frame) = (frame + 1 - frames.start, dance.steps_per_frame());
+                report_progress(progress, Progress::Frame { done, total, steps_per_frame })?;
+            }
+        }
+        if let Some(last) = in_flight {
+            let made = self.finish(last, drawer, &mut drawn)?;
+            tally.write(self, &drawn, made, sink)?;
+            report_progress(
+                progress,
+                Progress::Frame { done: total, total, steps_per_frame: dance.steps_per_frame() },
+            )?;
+        }
+        Ok(())
     }
 
     /// Starts to render a frame on a graphics card; `None` where frames are rendered at once by [`Job::draw`].

@@ -232,6 +232,19 @@ impl FilmWriter {
     /// Cancels the recording. This is the same as dropping the writer.
     pub fn cancel(self) {}
 
+    /// Ends a recording that cannot go on, for example because nothing draws its frames any more. What plays is left, as after an error.
+    pub fn leave(mut self) {
+        self.send_leave();
+        let _ = self.join();
+    }
+
+    fn send_leave(&self) {
+        if let Some(jobs) = &self.jobs {
+            // This fails only if the worker has stopped.
+            let _ = jobs.send(Job::Leave);
+        }
+    }
+
     /// Ends the worker and returns its result.
     fn join(&mut self) -> Result<FilmReport, RecordError> {
         self.jobs = None;
@@ -246,7 +259,10 @@ impl FilmWriter {
 
 impl Drop for FilmWriter {
     fn drop(&mut self) {
-        // The worker sees the channel close and removes its unfinished file.
+        if std::thread::panicking() {
+            self.send_leave();
+        }
+        // Otherwise the worker sees the channel close and removes its unfinished file.
         let _ = self.join();
     }
 }

@@ -168,6 +168,27 @@ fn a_cancel_leaves_the_old_film_alone() {
 }
 
 #[test]
+fn a_recording_that_cannot_go_on_leaves_what_plays() {
+    for panics in [false, true] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.mp4");
+        let mut film = FilmWriter::create(&path, SMALL).unwrap();
+        (0..30).for_each(|frame| film.push(&picture(SMALL, frame)).unwrap());
+        if panics {
+            let ended = std::thread::spawn(move || {
+                let _film = film;
+                std::panic::resume_unwind(Box::new("nothing draws"));
+            });
+            assert!(ended.join().is_err());
+        } else {
+            film.leave();
+        }
+        assert_eq!(keep_unfinished(&path).unwrap().map(|kept| kept.frames), Some(16), "{panics}");
+        assert_eq!(decode(&path).len(), 16);
+    }
+}
+
+#[test]
 fn a_full_disk_stops_the_film_and_leaves_what_plays() {
     let folder = tempfile::tempdir().unwrap();
     let whole = folder.path().join("whole.mp4");

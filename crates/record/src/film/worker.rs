@@ -18,8 +18,10 @@ pub(super) enum Job {
     Sound(Box<dyn SoundSource>),
     /// The next image.
     Frame(Vec<u8>),
-    /// There are no more frames. If the channel closes without this message, the recording has been cancelled.
+    /// There are no more frames.
     Finish,
+    /// The recording failed elsewhere. If the channel closes without this message or the one before, it has been cancelled.
+    Leave,
 }
 
 /// The unfinished film. When it is dropped, its file stays if the recording failed and there are tables with which it plays.
@@ -55,7 +57,8 @@ impl Film {
         Ok(Self { path: path.to_owned(), settings, rate, writer, tables, sound: None, frames: 0, before })
     }
 
-    /// Works until [`Job::Finish`] (returns the report), until the channel closes (returns `None`), or until an error.
+    /// Works until [`Job::Finish`] (returns the report), until [`Job::Leave`] or the channel closes (returns `None`), or until an
+    /// error.
     pub(super) fn run(
         mut self,
         todo: &Receiver<Job>,
@@ -72,6 +75,7 @@ impl Film {
                     give_back(done, rgba);
                 }
                 Job::Finish => return self.finish(&encoder).map(Some),
+                Job::Leave => return Ok(None),
             }
         }
         self.writer.medium().set_stays(false);
