@@ -2,6 +2,7 @@ use super::{FilmQuality, FilmSettings, FilmWriter};
 use crate::partial::failing::small_disk;
 use crate::{FilmReader, RecordError, keep_unfinished, read_film};
 use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
 
 const SMALL: FilmSettings = FilmSettings { width: 96, height: 64, fps: 25.0, quality: FilmQuality::High };
@@ -175,11 +176,11 @@ fn a_recording_that_cannot_go_on_leaves_what_plays() {
         let mut film = FilmWriter::create(&path, SMALL).unwrap();
         (0..30).for_each(|frame| film.push(&picture(SMALL, frame)).unwrap());
         if panics {
-            let ended = std::thread::spawn(move || {
+            let ended = catch_unwind(AssertUnwindSafe(|| {
                 let _film = film;
-                std::panic::resume_unwind(Box::new("nothing draws"));
-            });
-            assert!(ended.join().is_err());
+                resume_unwind(Box::new("nothing draws"));
+            }));
+            assert!(ended.is_err());
         } else {
             film.leave();
         }
