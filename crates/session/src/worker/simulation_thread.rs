@@ -319,13 +319,11 @@ impl SimulationThread {
             let (brushed, brushes) = (self.brushing.awaits(), self.brushing.is_open());
             let frame = brushed.then(|| engine.frame_of_guides());
             let laid = engine.set_scene(scene);
-            if let Some(frame) = frame.filter(|_| !laid) {
-                self.brushing.keep(engine, &frame);
-            }
+            let stays = frame.filter(|_| !laid).is_some_and(|frame| self.brushing.keep(engine, &frame));
             if self.still && (laid || !brushes) {
                 engine.lay_at_rest();
             }
-            if self.still || (brushed && !laid) {
+            if self.still || stays {
                 // Hair that was brushed stays as it is.
                 (self.preroll, self.settling_pending) = (None, false);
                 return;

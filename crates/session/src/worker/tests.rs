@@ -4,8 +4,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use lovelock_brush::{BrushSettings, Tool};
 use lovelock_project::files::Access;
 use lovelock_style::hand::HandEdits;
+use lovelock_style::operations::Hand;
+use lovelock_style::{Layer, Operation};
 use lovelock_testkit::wait::wait_for as wait;
 
 use super::*;
@@ -310,37 +313,41 @@ fn brushed(worker: &Worker) -> StrokeReport {
     })
 }
 
-#[test]
-fn strokes_wait_for_their_layer_and_report_what_they_do() {
-    use lovelock_brush::{BrushSettings, Tool};
-    use lovelock_style::operations::Hand;
-    use lovelock_style::{Layer, Operation};
-
-    let mut project = small_project();
+/// A worker that is paused at the start.
+fn paused(project: &lovelock_project::Project) -> Worker {
     let (worker, _) = start(project.clone());
     wait("a frame", || worker.frame());
     worker.set_playing(false);
     worker.seek(0.0);
-    let frame = settled_at(&worker, 0.0);
-    let layer = project.hair.stack.push(Layer::of(Hand::default())).expect("room");
+    worker
+}
+
+/// A stroke of the comb in a layer.
+fn combing(layer: u32, id: u64, after: Option<u64>) -> StrokeStart {
     let settings = BrushSettings { radius: 0.08, front_only: false, ..BrushSettings::default() };
-    let begin = |id, after| StrokeStart {
-        id,
-        layer,
-        tool: Tool::Comb,
-        inverted: false,
-        settings: settings.clone(),
-        edits: HandEdits::default(),
-        after,
-    };
-    let tip = frame.scene.style.guides.point(0, frame.scene.style.guides.points_per_guide - 1);
-    let sample = |i: u8| StrokeSample {
-        position: tip + glam::Vec3::Z * 0.01 * f32::from(i),
+    StrokeStart { id, layer, tool: Tool::Comb, inverted: false, settings, edits: HandEdits::default(), after }
+}
+
+/// A sample of a stroke forward from the tip of the first guide of a frame.
+fn comb_sample(frame: &FrameSnapshot, i: u8) -> StrokeSample {
+    let guides = &frame.scene.style.guides;
+    StrokeSample {
+        position: guides.point(0, guides.points_per_guide - 1) + glam::Vec3::Z * 0.01 * f32::from(i),
         view: glam::Vec3::NEG_Z,
         drag: glam::Vec3::Z * 0.01 * f32::from(i.min(1)),
         pressure: 1.0,
         time_secs: 0.0,
-    };
+    }
+}
+
+#[test]
+fn strokes_wait_for_their_layer_and_report_what_they_do() {
+    let mut project = small_project();
+    let worker = paused(&project);
+    let frame = settled_at(&worker, 0.0);
+    let layer = project.hair.stack.push(Layer::of(Hand::default())).expect("room");
+    let begin = |id, after| combing(layer, id, after);
+    let sample = |i: u8| comb_sample(&frame, i);
     worker.begin_stroke(begin(1, None));
     worker.stroke_to(1, (0..6).map(sample).collect());
     worker.end_stroke(1);
@@ -395,4 +402,51 @@ fn strokes_wait_for_their_layer_and_report_what_they_do() {
     assert!(lost.stroke == 3 && lost.edits.is_empty());
     let fourth = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
     assert!(fourth.stroke == 4 && fourth.edits.is_empty(), "what another layer got is not taken over");
+}
+
+#[test]
+fn hair_of_strokes_that_are_undone_settles_again() {
+    let plain = small_project();
+    let worker = paused(&plain);
+    let frame = settled_at(&worker, 0.0);
+    let mut project = plain.clone();
+    let layer = project.hair.stack.push(Layer::of(Hand::default())).expect("room");
+    // One that moves hair, and one beside it.
+    let beside = |i: u8| {
+        let mut sample = comb_sample(&frame, i);
+        sample.position += glam::Vec3::Y;
+        sample
+    };
+    let with = |edits: &HandEdits| {
+        let mut project = project.clone();
+        project.hair.stack.layers[0].operation = Operation::Hand(Hand { edits: edits.clone() });
+        Arc::new(project)
+    };
+    let shows = |edits: &HandEdits| {
+        wait("their hair", || {
+            worker.frame().filter(|frame| frame.scene.source.stack.hand(layer) == Some(edits))
+        })
+    };
+    worker.set_project(Arc::new(project.clone()), Access::new());
+    worker.begin_stroke(combing(layer, 1, None));
+    worker.stroke_to(1, (0..6).map(|i| comb_sample(&frame, i)).collect());
+    worker.end_stroke(1);
+    let first = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
+    assert!(!first.edits.is_empty());
+    worker.set_project(with(&first.edits), Access::new());
+    let combed = shows(&first.edits);
+    worker.begin_stroke(combing(layer, 2, Some(1)));
+    worker.stroke_to(2, (0..6).map(beside).collect());
+    worker.end_stroke(2);
+    let second = wait("its end", || Some(brushed(&worker)).filter(|brushed| brushed.ended));
+    assert!(second.stroke == 2 && second.edits == first.edits, "it is beside the hair");
+    // Both are undone.
+    for undone in [Arc::new(project.clone()), Arc::new(plain.clone())] {
+        worker.set_project(Arc::clone(&undone), Access::new());
+        wait("the hair without them", || {
+            let now = worker.frame().filter(|frame| frame.scene.source.stack == undone.hair.stack)?;
+            (crate::testing::farthest(&frame, &now) < 1e-4).then_some(())
+        });
+    }
+    assert!(crate::testing::farthest(&frame, &combed) > 1e-3, "control: the stroke has moved hair");
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use lovelock_base::clock::Stopwatch;
 use lovelock_groom::GuideFrame;
 use lovelock_project::Project;
+use lovelock_style::StyleStack;
 use lovelock_style::hand::HandEdits;
 
 use super::super::Event;
@@ -62,21 +63,25 @@ impl Brushing {
         self.open.is_some() || self.ended.is_some()
     }
 
-    /// Keeps hair where strokes have left it, after a scene was taken that does not have all of them. `frame` is the hair before it.
-    pub(super) fn keep(&mut self, engine: &mut Engine, frame: &GuideFrame) {
+    /// Keeps hair where strokes have left it, after a scene was taken. `frame` is the hair before it. Returns whether it stays there; it
+    /// does not if the scene lacks what the strokes did, and none that has it is still to come.
+    pub(super) fn keep(&mut self, engine: &mut Engine, frame: &GuideFrame) -> bool {
         let stack = &engine.scene().source.stack;
-        if let Some(OpenStroke { start, stroke: Some(stroke) }) = &self.open {
-            if stack.hand(start.layer) != Some(&stroke.edits()) {
+        if let Some(OpenStroke { start, stroke }) = &self.open {
+            if let Some(stroke) = stroke.as_ref().filter(|of| stack.hand(start.layer) != Some(&of.edits())) {
                 stroke.hold(engine, frame);
             }
-        } else if let Some(ended) = &self.ended {
-            let now = stack.hand(ended.layer);
-            if now.is_none() || now == Some(&ended.edits) || ended.since.secs() > LONGEST_KEPT_SECS {
-                self.ended = None;
-            } else {
-                ended.stroke.hold(engine, frame);
-            }
+            return true;
         }
+        let Some(ended) = &self.ended else { return false };
+        let now = stack.hand(ended.layer);
+        let has_all = now == Some(&ended.edits);
+        if has_all || now.is_none() || ended.since.secs() > LONGEST_KEPT_SECS {
+            self.ended = None;
+            return has_all;
+        }
+        ended.stroke.hold(engine, frame);
+        true
     }
 
     /// Takes notice of a project: a stroke that it had and has no longer was undone, and is not waited for.
@@ -231,8 +236,14 @@ impl SimulationThread {
             if let Some(OpenStroke { start, stroke: Some(stroke) }) = self.brushing.open.take() {
                 let layer = start.layer;
                 let edits = self.brushing.left.get(&layer).map(|(_, left)| left.clone()).unwrap_or_default();
+                let has_all = |stack: &StyleStack| stack.hand(layer) == Some(&edits);
+                // A stroke beside the hair has done nothing that a scene could bring.
+                let is_there =
+                    self.engine.as_ref().is_some_and(|engine| has_all(&engine.scene().source.stack));
+                let is_known = self.project.as_ref().is_some_and(|project| has_all(&project.hair.stack));
                 let since = Stopwatch::start();
-                self.brushing.ended = Some(EndedStroke { layer, stroke, edits, is_known: false, since });
+                self.brushing.ended =
+                    (!is_there).then_some(EndedStroke { layer, stroke, edits, is_known, since });
             }
             self.record_change();
         }
