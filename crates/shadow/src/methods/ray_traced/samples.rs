@@ -165,6 +165,12 @@ mod tests {
     }
 
     #[test]
+    fn a_single_ray_goes_to_the_middle() {
+        let rays = Rays::new(&LightFrame::new(Vec3::NEG_Y), 1, 1e-3);
+        assert_eq!(rays.places(0, 0), [Vec2::ZERO; 2]);
+    }
+
+    #[test]
     fn rays_end_at_the_lamp_and_start_around_the_point() {
         let source = LightSource { position: Vec3::new(0.2, 2.0, 0.1), radius: 0.3 };
         let hard = LightFrame::new(Vec3::NEG_Y).standing(source, Vec3::ZERO);
