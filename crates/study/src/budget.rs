@@ -1,19 +1,24 @@
 //! Which method to take for a budget of time and memory, and which ones nobody needs.
 
-use crate::report::{BudgetReport, CompareReport, MethodReport};
+use crate::report::{BudgetReport, CompareReport, MethodReport, TimeSpread};
 
 /// Budgets of time, milliseconds to build and look up the maps.
-const TIMES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 500.0, f64::INFINITY];
+const TIMES: [f64; 10] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, f64::INFINITY];
 /// Budgets of memory, bytes of the maps.
 const MEMORIES: [u64; 5] = [1 << 20, 10 << 20, 100 << 20, 1 << 30, u64::MAX];
+/// Fewer times have no spread that could show whether they differ.
+const LEAST_TIMINGS: u32 = 3;
 
 /// What a method costs and how much it errs.
 #[derive(Clone, Copy, Debug)]
 struct Offer<'a> {
     method: &'a MethodReport,
     ms: f64,
-    /// The 90th percentile of the time.
+    /// The 10th and the 90th percentile of the time.
+    low_ms: f64,
     high_ms: f64,
+    /// How often the time was measured.
+    timings: u32,
     memory: u64,
     error: f64,
 }
@@ -22,20 +27,40 @@ impl<'a> Offer<'a> {
     /// `None` if one of the numbers is missing.
     fn of(method: &'a MethodReport) -> Option<Self> {
         let ms = method.ms.and_then(|ms| Some(ms.build? + ms.query?))?;
-        let high = |name: &str| method.times.iter().find(|time| time.name == name).map(|time| time.high);
-        let high_ms = high("build").zip(high("query")).map_or(ms, |(build, query)| build + query).max(ms);
-        Some(Self { method, ms, high_ms, memory: method.memory_bytes?, error: method.front_error()? })
+        let spread = |name: &str| method.times.iter().find(|time| time.name == name);
+        let both = spread("build").zip(spread("query"));
+        let sum = |of: fn(&TimeSpread) -> f64| both.map_or(ms, |(build, query)| of(build) + of(query));
+        Some(Self {
+            method,
+            ms,
+            low_ms: sum(|time| time.low).min(ms),
+            high_ms: sum(|time| time.high).max(ms),
+            timings: both.map_or(0, |(build, query)| build.count.min(query.count)),
+            memory: method.memory_bytes?,
+            error: method.front_error()?,
+        })
     }
 
     fn fits(&self, ms: f64, memory: u64) -> bool {
         self.ms <= ms && self.memory <= memory
     }
 
-    /// Whether this one is at least as good as another in time, memory and error, and better in one.
-    fn beats(&self, other: &Self) -> bool {
-        let as_good = self.ms <= other.ms && self.memory <= other.memory && self.error <= other.error;
-        as_good && (self.ms < other.ms || self.memory < other.memory || self.error < other.error)
+    fn is_timed(&self) -> bool {
+        self.timings >= LEAST_TIMINGS
     }
+
+    /// Whether this one is at least as good as another in error, time and memory, and either its error is smaller by more than `doubt`
+    /// or the middle 80 % of the times do not overlap.
+    fn beats(&self, other: &Self, doubt: f64) -> bool {
+        let as_good = self.ms <= other.ms && self.memory <= other.memory && self.error <= other.error;
+        let surely_faster = self.is_timed() && other.is_timed() && self.high_ms < other.low_ms;
+        as_good && (other.error - self.error > doubt || surely_faster)
+    }
+}
+
+/// Errors that differ by less may be equal: the ground truth may be off by its last change, for both.
+fn doubt(report: &CompareReport) -> f64 {
+    2.0 * f64::from(report.reference.change)
 }
 
 /// The methods that can be compared with each other: same backend, device, drawing and transparency.
@@ -76,9 +101,10 @@ pub(crate) fn winners(report: &CompareReport) -> Vec<BudgetReport> {
                 continue;
             }
             let next = fitting.get(1);
-            // The ground truth may be off by its last change, for both.
-            let doubt = 2.0 * f64::from(report.reference.change);
-            let apart = next.is_none_or(|next| next.error - best.error > doubt);
+            let apart = next.is_none_or(|next| next.error - best.error > doubt(report));
+            // Without a limit of time, nothing depends on how often it was measured.
+            let timings = next.map_or(best.timings, |next| best.timings.min(next.timings));
+            let timed = ms.is_infinite() || timings >= LEAST_TIMINGS;
             all.push(BudgetReport {
                 ms: ms.is_finite().then_some(ms),
                 memory_bytes: (memory != u64::MAX).then_some(memory),
@@ -86,20 +112,19 @@ pub(crate) fn winners(report: &CompareReport) -> Vec<BudgetReport> {
                 rmse: best.error,
                 next: next.map(|next| next.method.name.clone()),
                 next_rmse: next.map(|next| next.error),
-                certain: apart && best.high_ms <= ms,
+                certain: apart && timed && best.high_ms <= ms,
             });
         }
     }
     all
 }
 
-/// Names of the methods that another one of their group beats or equals in time, memory and error, each with that other one: the most
-/// accurate of several.
+/// Names of the methods that another one of their group beats beyond doubt, each with that other one: the most accurate of several.
 pub(crate) fn beaten(report: &CompareReport) -> Vec<(String, String)> {
-    let mut all = Vec::new();
+    let (mut all, doubt) = (Vec::new(), doubt(report));
     for offers in groups(&report.methods) {
         for offer in &offers {
-            let better = offers.iter().filter(|other| other.beats(offer));
+            let better = offers.iter().filter(|other| other.beats(offer, doubt));
             if let Some(best) = better.min_by(|a, b| a.error.total_cmp(&b.error)) {
                 all.push((offer.method.name.clone(), best.method.name.clone()));
             }
@@ -114,9 +139,17 @@ mod tests {
     use crate::report::{Reference, StageMs, TransmittanceError};
 
     fn method(name: &str, ms: f64, memory: u64, rmse: f64) -> MethodReport {
+        let time = |name: &str, median: f64| TimeSpread {
+            name: name.to_owned(),
+            median,
+            low: 0.9 * median,
+            high: median,
+            count: 30,
+        };
         MethodReport {
             name: name.to_owned(),
             ms: Some(StageMs { build: Some(ms), query: Some(0.0), ..StageMs::default() }),
+            times: vec![time("build", ms), time("query", 0.0)],
             memory_bytes: Some(memory),
             transmittance_common: Some(TransmittanceError { rmse, ..TransmittanceError::default() }),
             ..MethodReport::default()
@@ -163,5 +196,44 @@ mod tests {
         let mut missing = report();
         missing.methods.iter_mut().for_each(|method| method.memory_bytes = None);
         assert_eq!((beaten(&missing), winners(&missing)), (Vec::new(), Vec::new()));
+    }
+
+    #[test]
+    fn nobody_is_beaten_within_the_doubt() {
+        let mut close = CompareReport {
+            methods: vec![method("deep", 147.0, 3 << 20, 0.0359), method("clusters", 126.0, 1 << 20, 0.0357)],
+            reference: Reference { change: 0.0015, ..Reference::default() },
+            ..CompareReport::default()
+        };
+        close.methods[0].times[0].low = 123.0;
+        close.methods[1].times[0].high = 158.0;
+        assert!(beaten(&close).is_empty());
+        let deep = [("deep".to_owned(), "clusters".to_owned())];
+        let mut accurate = close.clone();
+        accurate.reference.change = 0.000_05;
+        assert_eq!(beaten(&accurate), deep);
+        let mut faster = close.clone();
+        faster.methods[1].times[0].high = 122.0;
+        assert_eq!(beaten(&faster), deep);
+        // Of two times, the percentiles are those times.
+        faster.methods[0].times[1].count = 2;
+        assert!(beaten(&faster).is_empty());
+    }
+
+    #[test]
+    fn a_choice_by_fewer_than_three_times_is_not_certain() {
+        let mut once = report();
+        once.methods[2].times[0].count = 1;
+        let certain =
+            |report: &CompareReport| -> Vec<bool> { winners(report).iter().map(|won| won.certain).collect() };
+        assert_eq!(certain(&once), [true, true, false]);
+        // The runner-up's times count too, and those of a method alone.
+        once.methods[0].times[0].count = 2;
+        assert_eq!(certain(&once), [false, false, false]);
+        // Control: without a limit of time, a larger error stays a larger error.
+        let mut slow = report();
+        slow.methods = vec![method("a", 600.0, 2 << 30, 0.02), method("b", 600.0, 2 << 30, 0.03)];
+        slow.methods.iter_mut().for_each(|method| method.times.clear());
+        assert_eq!(certain(&slow), [true]);
     }
 }

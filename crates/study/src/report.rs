@@ -30,7 +30,8 @@ pub struct CompareReport {
     /// The most accurate method for budgets of time and memory.
     #[serde(default)]
     pub budgets: Vec<BudgetReport>,
-    /// Methods that another one equals or beats in time, memory and error, each with the most accurate of those.
+    /// Methods that another one beats, each with the most accurate of those: it is at least as good in error, time and memory, and its
+    /// error is smaller by more than twice the last change of the ground truth or the middle 80 % of the times do not overlap.
     #[serde(default)]
     pub beaten: Vec<(String, String)>,
     /// Films of the compared frames.
@@ -292,7 +293,8 @@ pub struct BudgetReport {
     pub next: Option<String>,
     /// The error of the runner-up.
     pub next_rmse: Option<f64>,
-    /// Whether the difference of the errors exceeds twice the last change of the ground truth, and 9 of 10 times are within the budget.
+    /// Whether the difference of the errors exceeds twice the last change of the ground truth, 9 of 10 times are within the budget, and
+    /// both methods were timed at least three times if time matters.
     pub certain: bool,
 }
 

@@ -12,7 +12,8 @@ pub(super) fn page(scenes: &[(&str, Report)], growing: &[(&str, Bench)]) -> Stri
     let mut text = format!(
         "# Shadow methods on hair, fur and grass\n\n\
          Measured on: {machine}. This page is written by `cargo xtask methods`, which runs `lovelock compare {OPTIONS}` for each scene: hairstyles from frame 45 of the dance on, fur and grass at rest. \
-         Every method has its default settings; errors are those of the first light.\n\n\
+         Every method has its default settings, except `voxel-map` on fur and grass, whose projects set 256 cells in place of 128; \
+         errors are those of the first light.\n\n\
          - *RMSE*, *bias*, *99 %*: root mean square, mean (above 0 where too bright) and 99th percentile of the difference of transmittance \
          at every point of the strands, against one ground truth: the converged mean of the light over a texel of `exact`.\n\
          - *FLIP*: mean perceived difference of the image from the one with converged shadow.\n\

@@ -163,6 +163,20 @@ mod tests {
     }
 
     #[test]
+    fn a_row_has_one_hairstyle_and_one_size() {
+        for recipe in RECIPES {
+            let Source::Rows { view, options, .. } = recipe.source else { continue };
+            for (label, options) in options {
+                let words = || [view, *options].into_iter().flat_map(str::split_whitespace);
+                for name in ["--preset", "--size"] {
+                    let count = words().filter(|word| *word == name).count();
+                    assert_eq!(count, 1, "{}, {label}: {name}", recipe.name);
+                }
+            }
+        }
+    }
+
+    #[test]
     fn names_choose_by_their_start() {
         let names = |names: &[&str]| {
             let names: Vec<String> = names.iter().map(|&name| name.to_owned()).collect();

@@ -48,14 +48,52 @@ pub(super) struct Step {
 pub(super) const PORTRAIT: &str = "--set camera.fov_y=0.28 --set camera.distance=1.5 --set camera.follow_offset=0,0.015,0 \
                         --set picture.strand_detail=2";
 
-/// Fair hair in one hard light from the front, so that the shadow of a method can be seen.
-const SHADED: &str = "--preset long-waves --size 220x260 --set lights.1.enabled=false --set lights.2.enabled=false \
-                      --set lights.0.softness=0 --set look.eumelanin=0.25 --set picture.exposure_stops=1 \
-                      --set camera.distance=1.15 --set camera.azimuth=1.7 --set camera.follow_offset=0.02,-0.09,0";
+/// Fair hair in one light from the front, so that the shadow of a method can be seen, with more options.
+macro_rules! shaded {
+    ($options:literal) => {
+        concat!(
+            "--size 220x260 --set lights.1.enabled=false --set lights.2.enabled=false --set lights.0.softness=0 \
+             --set look.eumelanin=0.25 ",
+            $options
+        )
+    };
+}
+
+/// Locks.
+const SHADED: &str = shaded!(
+    "--preset long-waves --set picture.exposure_stops=1 --set camera.distance=1.15 --set camera.azimuth=1.7 \
+     --set camera.follow_offset=0.02,-0.09,0"
+);
+/// Locks from near, where texels can be seen.
+const NEAR: &str = shaded!(
+    "--preset long-waves --set picture.exposure_stops=1 --set camera.distance=0.6 --set camera.azimuth=1.7 \
+     --set camera.follow_offset=0.02,-0.02,0"
+);
+/// Few strands, each of which casts a shadow that can be seen.
+const SPARSE: &str = shaded!(
+    "--preset long-straight --set picture.exposure_stops=1.7 --set picture.ambient=0.1 --set picture.strands=fixed \
+     --set picture.strand_number=2000 --set camera.distance=0.45 --set camera.azimuth=1.8 \
+     --set camera.follow_offset=0.02,0.05,0"
+);
+/// Strands in a large light.
+const SOFT: &str = shaded!(
+    "--preset long-straight --set picture.exposure_stops=1.5 --set picture.ambient=0.1 --set lights.0.shadow_samples=16 \
+     --set lights.0.angular_radius=0.5 --set picture.strands=fixed --set picture.strand_number=4000 \
+     --set camera.distance=0.6 --set camera.azimuth=1.9 --set camera.follow_offset=0.02,-0.02,0"
+);
 
 /// A method beside the exact shadow, and where it fails.
 const fn method(name: &'static str, options: &'static [(&'static str, &'static str)]) -> Recipe {
-    Recipe { name, source: Source::Rows { view: SHADED, columns: 3, options } }
+    method_on(SHADED, name, options)
+}
+
+/// As [`method`], in another view.
+const fn method_on(
+    view: &'static str,
+    name: &'static str,
+    options: &'static [(&'static str, &'static str)],
+) -> Recipe {
+    Recipe { name, source: Source::Rows { view, columns: 3, options } }
 }
 
 /// The first tile of [`method`].
@@ -85,14 +123,19 @@ pub(super) const RECIPES: &[Recipe] = &[
         ),
     },
     Recipe { name: "compare_window", source: Source::Window("--panes --after 12") },
-    method(
-        "method_none",
-        &[
-            EXACT,
-            ("none", "--shadow none"),
-            ("none, from the light", "--shadow none --set camera.azimuth=0.9"),
-        ],
-    ),
+    Recipe {
+        name: "method_none",
+        source: Source::Rows {
+            view: SHADED,
+            columns: 4,
+            options: &[
+                EXACT,
+                ("none", "--shadow none"),
+                ("exact, from the light", "--shadow exact --set camera.azimuth=0.9"),
+                ("none, from the light", "--shadow none --set camera.azimuth=0.9"),
+            ],
+        },
+    },
     method(
         "method_voxel_map",
         &[
@@ -132,18 +175,21 @@ pub(super) const RECIPES: &[Recipe] = &[
             ("1 cluster", "--shadow density-clustering --set shadow.density_clustering.clusters=1"),
         ],
     ),
-    method(
+    method_on(
+        NEAR,
         "method_occupancy_maps",
         &[
             EXACT,
             ("128 slices", "--shadow occupancy-maps"),
             (
-                "4 slabs, 64 texels",
-                "--shadow occupancy-maps --set shadow.occupancy_maps.slabs=4 --set shadow.occupancy_maps.resolution=64",
+                "4 slabs, 64, nearest",
+                "--shadow occupancy-maps --set shadow.occupancy_maps.slabs=4 --set shadow.occupancy_maps.resolution=64 \
+                 --set shadow.occupancy_maps.filter=nearest",
             ),
         ],
     ),
-    method(
+    method_on(
+        SPARSE,
         "method_deep_shadow_maps",
         &[
             EXACT,
@@ -173,7 +219,8 @@ pub(super) const RECIPES: &[Recipe] = &[
             ),
         ],
     ),
-    method(
+    method_on(
+        SPARSE,
         "method_adaptive",
         &[
             EXACT,
@@ -204,12 +251,13 @@ pub(super) const RECIPES: &[Recipe] = &[
             ),
         ],
     ),
-    method(
+    method_on(
+        SOFT,
         "method_ray_traced",
         &[
             EXACT,
             ("4 rays", "--shadow ray-traced"),
-            ("1 ray", "--shadow ray-traced --set shadow.ray_traced.rays=1"),
+            ("1 ray: hard shadow", "--shadow ray-traced --set shadow.ray_traced.rays=1"),
         ],
     ),
     Recipe {

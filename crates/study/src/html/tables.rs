@@ -1,7 +1,7 @@
 //! The tables of the page. Each backend has tables of its own, so that no column mixes their times.
 
 use super::names::{Group, Names};
-use super::words::{bytes, escaped, fixed, grouped, ms, signed, small};
+use super::words::{bytes, draws, escaped, fixed, grouped, ms, signed, small};
 use crate::report::{CompareReport, MethodReport, TimeSpread};
 use std::fmt::Write as _;
 
@@ -132,7 +132,7 @@ pub(super) fn overview(group: &Group<'_>, names: &Names, report: &CompareReport)
         rows += &cells.map(|((text, value), class)| cell(&text, value, class)).concat();
         rows += "</tr>";
     }
-    let title = format!("{}. Times are medians of up to {} draws.", group.title, report.scene.draws);
+    let title = format!("{}. Times are medians of up to {}.", group.title, draws(report.scene.draws));
     let table = table(&title, &spans, &COLUMNS, &rows);
     match report.reference.doubt_at_points() {
         Some(change) => {
@@ -275,9 +275,9 @@ pub(super) fn times(group: &Group<'_>, names: &Names) -> String {
 
 fn spread(time: &TimeSpread) -> String {
     format!(
-        "{}<small title=\"{} draws\">{}–{}</small>",
+        "{}<small title=\"{}\">{}–{}</small>",
         ms(Some(time.median)),
-        grouped(u64::from(time.count)),
+        draws(time.count),
         ms(Some(time.low)),
         ms(Some(time.high))
     )

@@ -86,6 +86,11 @@ pub fn bytes(value: Option<u64>) -> String {
     format!("{bytes} B")
 }
 
+/// A number of draws.
+pub fn draws(count: u32) -> String {
+    format!("{} draw{}", grouped(u64::from(count)), if count == 1 { "" } else { "s" })
+}
+
 /// A whole number in groups of three digits.
 pub fn grouped(value: u64) -> String {
     let digits = value.to_string();
@@ -101,7 +106,7 @@ pub fn grouped(value: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{address, bytes, escaped, fixed, grouped, ms, signed, small};
+    use super::{address, bytes, draws, escaped, fixed, grouped, ms, signed, small};
 
     #[test]
     fn numbers_read_as_they_should() {
@@ -115,6 +120,7 @@ mod tests {
         assert_eq!(signed(Some(0.25), 2), "+0.25");
         assert_eq!((signed(Some(-0.25), 2), signed(Some(0.0), 2)), ("−0.25".into(), "0.00".into()));
         assert_eq!([0.123, 12.34, 456.7].map(|value| ms(Some(value))), ["0.12", "12.3", "457"]);
+        assert_eq!([1, 2, 1000].map(draws), ["1 draw", "2 draws", "1\u{202f}000 draws"]);
         assert_eq!(bytes(Some(512)), "512 B");
         assert_eq!(bytes(Some(3 << 19)), "1.50 MiB");
         assert_eq!(bytes(Some(20 << 30)), "20.0 GiB");

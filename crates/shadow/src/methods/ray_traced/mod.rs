@@ -2,7 +2,7 @@
 //!
 //! Strands are ribbons that face the ray, as wide as they block light: each that a ray crosses takes as much of the light as its optical
 //! depth says. Rays start on a square around the point, as wide as a strand, and end on the disc of the lamp, so that light is the mean over
-//! both. There is no map, no texel and no filter: it is the truth of soft shadows.
+//! both. There is no map, no texel and no filter: with many rays it is the truth of soft shadows.
 
 mod cpu;
 mod gpu;

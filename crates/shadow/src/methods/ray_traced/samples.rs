@@ -84,7 +84,8 @@ impl Rays {
     }
 
     /// The places of a ray: on a square around the origin whose edge is 1, and on the unit disc. Both are divided evenly, in different
-    /// orders, so that neighbours on the square end far apart.
+    /// orders, so that neighbours on the square end far apart. They are the same for every point: few rays show a soft edge several
+    /// times, and a single one goes to the middle of the lamp.
     fn places(&self, i: u32, j: u32) -> [Vec2; 2] {
         let part = |i: u32| (i as f32 + 0.5) / self.edge as f32;
         let start = Vec2::new(part(i) - 0.5, part(j) - 0.5);
@@ -161,6 +162,12 @@ mod tests {
                 assert!(places[..at].iter().all(|[_, other]| other.distance(*disc) > 1e-3), "each once");
             }
         }
+    }
+
+    #[test]
+    fn a_single_ray_goes_to_the_middle() {
+        let rays = Rays::new(&LightFrame::new(Vec3::NEG_Y), 1, 1e-3);
+        assert_eq!(rays.places(0, 0), [Vec2::ZERO; 2]);
     }
 
     #[test]

@@ -11,7 +11,7 @@ impl Settings for RayTracedSettings {
             field!(Self, rays),
             &[1, 4, 16, 64, 256],
             "Rays",
-            "Number of rays from each point to the light. More rays make soft shadows smoother and take longer.",
+            "Number of rays from each point to the light. One makes shadows hard, few show soft edges several times, and more take longer.",
         ),
         Setting::count(
             field!(Self, memory_limit_bytes),

@@ -1,4 +1,4 @@
-//! Places labels beside dots where they overlap least.
+//! Places labels beside dots so that no two overlap.
 
 use super::escaped;
 use std::fmt::Write as _;
@@ -12,17 +12,44 @@ type Box4 = [f64; 4];
 /// The label of a dot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Label {
-    /// Always drawn unless empty.
+    /// Drawn unless empty; away from its dot if there is no room beside it. Left out only if it fits nowhere.
     Always(String),
-    /// Left out if it would overlap too much.
+    /// Left out if it would overlap a label, or too much of dots and lines.
     WhereFree(String),
 }
 
-/// Fraction of a label that may overlap before it is left out.
+/// Fraction of a label that may overlap dots and lines before it is left out.
 const COVERED: f64 = 0.2;
+
+/// Distance between the places that a label may move to, pixels.
+const STEP: f64 = 4.0;
+/// The cost of a pixel by which a label moves, as an area that it covers.
+const MOVED: f64 = 8.0;
+/// A label farther from its dot has a line to it, pixels.
+const AWAY: f64 = 10.0;
+/// The rim of a dot, where such a line begins, pixels from the centre.
+const RIM: f64 = 6.0;
 
 /// Length of the line pieces that labels avoid, pixels.
 const PIECE: f64 = 6.0;
+
+/// A place for a label.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    area: Box4,
+    /// The end of the label at the dot, as in SVG.
+    anchor: &'static str,
+    /// Distance from the place beside the dot, pixels.
+    moved: f64,
+}
+
+/// A label at its place.
+#[derive(Clone, Copy, Debug)]
+struct Placed<'a> {
+    word: &'a str,
+    dot: (f64, f64),
+    place: Place,
+}
 
 /// Labels beside dots. They are placed after all dots are known, so that none covers a dot.
 pub(super) struct Labels {
@@ -55,13 +82,12 @@ impl Labels {
         }
     }
 
-    /// All words, each at the one of eight places that covers the least; those that must be there come first.
-    pub(super) fn svg(&self) -> String {
-        // A covered dot is worse than a covered word.
-        let mut taken: Vec<(Box4, f64)> =
+    /// Each label at the free place that covers the least; those that must be drawn come first. No two overlap.
+    fn placed(&self) -> Vec<Placed<'_>> {
+        // A covered dot is worse than a crossed line.
+        let mut avoided: Vec<(Box4, f64)> =
             self.dots.iter().map(|(x, y, _)| ([x - 7.0, y - 7.0, x + 7.0, y + 7.0], 3.0)).collect();
-        taken.extend(self.lines.iter().map(|piece| (*piece, 0.5)));
-        let mut out = String::new();
+        avoided.extend(self.lines.iter().map(|piece| (*piece, 0.5)));
         let words = |always: bool| {
             self.dots.iter().filter_map(move |(x, y, label)| match label {
                 Label::Always(word) if always && !word.is_empty() => Some((*x, *y, word, f64::INFINITY)),
@@ -69,45 +95,85 @@ impl Labels {
                 Label::Always(_) | Label::WhereFree(_) => None,
             })
         };
+        let mut placed: Vec<Placed<'_>> = Vec::new();
         for (x, y, word, most) in words(true).chain(words(false)).take(200) {
-            let (width, height) = (word.chars().count() as f64 * LETTER.0, LETTER.1);
-            // Words end at their dot where they stand before it: their true width is the browser's alone to know.
-            let around = [
-                (x + 9.0, y - height / 2.0, "start"),
-                (x - 9.0 - width, y - height / 2.0, "end"),
-                (x - width / 2.0, y - 8.0 - height, "middle"),
-                (x - width / 2.0, y + 8.0, "middle"),
-                (x + 6.0, y - 6.0 - height, "start"),
-                (x + 6.0, y + 6.0, "start"),
-                (x - 6.0 - width, y - 6.0 - height, "end"),
-                (x - 6.0 - width, y + 6.0, "end"),
-            ];
-            let boxes = around.map(|(left, top, anchor)| ([left, top, left + width, top + height], anchor));
-            let cost = |place: &Box4| {
-                let covered: f64 = taken.iter().map(|(other, weight)| weight * overlap(place, other)).sum();
-                covered + 4.0 * (width * height - overlap(place, &[0.0, 0.0, self.field.0, self.field.1]))
+            let width = word.chars().count() as f64 * LETTER.0;
+            let area = width * LETTER.1;
+            let is_free = |at: &Place| placed.iter().all(|other| overlap(&at.area, &other.place.area) <= 0.0);
+            let cost = |at: &Place| {
+                let covered: f64 =
+                    avoided.iter().map(|(other, weight)| weight * overlap(&at.area, other)).sum();
+                let outside = area - overlap(&at.area, &[0.0, 0.0, self.field.0, self.field.1]);
+                covered + 4.0 * outside + MOVED * at.moved
             };
-            let Some((best, anchor)) = boxes.into_iter().min_by(|a, b| cost(&a.0).total_cmp(&cost(&b.0)))
-            else {
-                continue;
-            };
-            if cost(&best) > most * width * height {
-                continue;
+            let places = self.places((x, y), width, most.is_infinite());
+            let costs = places.into_iter().filter(is_free).map(|at| (cost(&at), at));
+            let best = costs.min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((_, place)) = best.filter(|(cost, _)| *cost <= most * area) else { continue };
+            placed.push(Placed { word, dot: (x, y), place });
+        }
+        placed
+    }
+
+    /// The places beside a dot, and, if the label may be `moved`, those above and below them.
+    fn places(&self, (x, y): (f64, f64), width: f64, moved: bool) -> Vec<Place> {
+        let height = LETTER.1;
+        // Words end at their dot where they stand before it: their true width is the browser's alone to know.
+        let around = [
+            (x + 9.0, y - height / 2.0, "start"),
+            (x - 9.0 - width, y - height / 2.0, "end"),
+            (x - width / 2.0, y - 8.0 - height, "middle"),
+            (x - width / 2.0, y + 8.0, "middle"),
+            (x + 6.0, y - 6.0 - height, "start"),
+            (x + 6.0, y + 6.0, "start"),
+            (x - 6.0 - width, y - 6.0 - height, "end"),
+            (x - 6.0 - width, y + 6.0, "end"),
+        ];
+        let place = |(left, top, anchor): (f64, f64, &'static str), by: f64| Place {
+            area: [left, top + by, left + width, top + by + height],
+            anchor,
+            moved: by.abs(),
+        };
+        let mut places: Vec<Place> = around.into_iter().map(|beside| place(beside, 0.0)).collect();
+        if moved {
+            let steps = (self.field.1 / STEP).ceil().clamp(0.0, 200.0) as u32;
+            for by in (1..=steps).flat_map(|step| [-STEP, STEP].map(|by| by * f64::from(step))) {
+                let there = around[..3].iter().map(|beside| place(*beside, by));
+                places.extend(there.filter(|at| at.area[1] >= 0.0 && at.area[3] <= self.field.1));
             }
-            taken.push((best, 1.0));
-            let base = best[1] + height - 3.0;
+        }
+        places
+    }
+
+    /// All labels, above a line to its dot from each that is away from it.
+    pub(super) fn svg(&self) -> String {
+        let (mut leaders, mut words) = (String::new(), String::new());
+        for Placed { word, dot, place } in self.placed() {
+            let [left, top, right, bottom] = place.area;
+            let (to_x, to_y) = (dot.0.clamp(left, right), dot.1.clamp(top, bottom));
+            let [across, down] = [to_x - dot.0, to_y - dot.1];
+            let away = across.hypot(down);
+            if away > AWAY {
+                let (from_x, from_y) = (dot.0 + RIM * across / away, dot.1 + RIM * down / away);
+                let _ = write!(
+                    leaders,
+                    "<path class=\"leader\" d=\"M{from_x:.1} {from_y:.1}L{to_x:.1} {to_y:.1}\"/>"
+                );
+            }
+            let base = bottom - 3.0;
+            let anchor = place.anchor;
             let at = match anchor {
-                "end" => best[2],
-                "middle" => best[0] + width / 2.0,
-                _ => best[0],
+                "end" => right,
+                "middle" => f64::midpoint(left, right),
+                _ => left,
             };
             let word = escaped(word);
             let _ = write!(
-                out,
+                words,
                 "<text class=\"label\" x=\"{at:.1}\" y=\"{base:.1}\" text-anchor=\"{anchor}\">{word}</text>"
             );
         }
-        out
+        leaders + &words
     }
 }
 
@@ -119,6 +185,7 @@ fn overlap(a: &Box4, b: &Box4) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Axis;
     use super::{Label, Labels, overlap};
 
     #[test]
@@ -150,6 +217,65 @@ mod tests {
         for (i, a) in boxes.iter().enumerate() {
             assert!(boxes[..i].iter().all(|b| overlap(a, b) < 1.0), "{boxes:?}");
         }
+    }
+
+    /// Fails unless all labels are drawn in the field without overlaps.
+    fn check(labels: &Labels, count: usize) {
+        let placed = labels.placed();
+        assert_eq!(placed.len(), count);
+        let field = [0.0, 0.0, labels.field.0, labels.field.1];
+        for (i, a) in placed.iter().enumerate() {
+            let [left, top, right, bottom] = a.place.area;
+            let outside = (right - left) * (bottom - top) - overlap(&a.place.area, &field);
+            assert!(outside < 1e-6, "{a:?}");
+            for b in &placed[..i] {
+                assert!(overlap(&a.place.area, &b.place.area) <= 0.0, "{a:?} {b:?}");
+            }
+        }
+        assert_eq!(labels.svg(), labels.svg());
+    }
+
+    /// Milliseconds and errors of `docs/measured_methods.md`, smooth hair.
+    #[test]
+    fn the_names_of_measured_methods_do_not_overlap() {
+        let measured = [
+            ("Voxel map", 3.94, 0.0267),
+            ("Opacity maps", 13.97, 0.0332),
+            ("Deep opacity maps", 14.04, 0.1111),
+            ("Density clustering", 33.66, 0.0357),
+            ("Occupancy maps", 18.86, 0.0373),
+            ("Deep shadow maps", 29.56, 0.0359),
+            ("Approximate deep", 11.36, 0.1803),
+            ("Fourier maps", 42.56, 0.0355),
+            ("Adaptive maps", 31.25, 0.0390),
+            ("Moments", 20.41, 0.0971),
+            ("Voxel march", 269.37, 0.0861),
+            ("Ray traced", 7982.84, 0.0152),
+            ("Exact", 18.36, 0.0343),
+        ];
+        let x = Axis::logarithmic("", measured.map(|(_, ms, _)| ms));
+        let y = Axis::logarithmic("", measured.map(|(.., error)| error));
+        let mut labels = Labels::new(470.0, 320.0);
+        for (name, ms, error) in measured {
+            labels.add(470.0 * x.place(ms), 320.0 * (1.0 - y.place(error)), Label::Always(name.into()));
+        }
+        check(&labels, measured.len());
+    }
+
+    #[test]
+    fn names_of_crowded_dots_move_and_have_lines() {
+        let mut labels = Labels::new(470.0, 320.0);
+        for i in 0..16 {
+            let i = f64::from(i);
+            labels.add(235.0 + i % 4.0, 160.0 + i / 4.0, Label::Always("Density clustering".into()));
+        }
+        check(&labels, 16);
+        assert!(labels.svg().contains("class=\"leader\""));
+        // Negative control: a dot alone.
+        let mut alone = Labels::new(470.0, 320.0);
+        alone.add(235.0, 160.0, Label::Always("Density clustering".into()));
+        check(&alone, 1);
+        assert!(!alone.svg().contains("leader"));
     }
 
     #[test]
