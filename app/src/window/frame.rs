@@ -135,7 +135,11 @@ impl Window {
             // Another page, another tool, or no image.
             self.end_stroke();
         }
-        let refused = self.document.edit_seen(&seen, project, self.moment(&ctx));
+        let moment = self.moment(&ctx);
+        let refused = match self.take_stroke_label() {
+            Some(label) => self.document.edit_seen_as(&label, &seen, project, moment),
+            None => self.document.edit_seen(&seen, project, moment),
+        };
         self.report_refused(refused);
         let said = control::said(&ctx);
         self.warn(said);
