@@ -12,6 +12,7 @@ use lovelock_project::tracks::Track;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 
+use super::brushes::beside_bar;
 use super::command::Command;
 use super::control::Keying;
 use super::focus::{Area, Focus};
@@ -192,7 +193,7 @@ impl Window {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.display.title = title;
         }
-        if let Some(path) = self.notices.show(&ctx, image)
+        if let Some(path) = self.notices.show(&ctx, beside_bar(&ctx, image))
             && let Err(error) = open::that_detached(&path)
         {
             self.warn([format!("{}: could not start a program to open it: {error}", path.display())]);
