@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, CentralPanel, Frame, Panel, ProgressBar, Rect, RichText, Ui, vec2};
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{Align2, CentralPanel, Color32, Frame, Panel, ProgressBar, Rect, RichText, TextStyle, Ui, vec2};
 use lovelock_base::settings::Info;
 use lovelock_glyphs::Script;
 use lovelock_project::Project;
@@ -11,6 +12,7 @@ use lovelock_project::tracks::Track;
 use lovelock_session::render_thread::ShownMask;
 use lovelock_session::resolution;
 
+use super::brushes::beside_bar;
 use super::command::Command;
 use super::control::Keying;
 use super::focus::{Area, Focus};
@@ -135,7 +137,11 @@ impl Window {
             // Another page, another tool, or no image.
             self.end_stroke();
         }
-        let refused = self.document.edit_seen(&seen, project, self.moment(&ctx));
+        let moment = self.moment(&ctx);
+        let refused = match self.take_stroke_label() {
+            Some(label) => self.document.edit_seen_as(&label, &seen, project, moment),
+            None => self.document.edit_seen(&seen, project, moment),
+        };
         self.report_refused(refused);
         let said = control::said(&ctx);
         self.warn(said);
@@ -187,7 +193,7 @@ impl Window {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.display.title = title;
         }
-        if let Some(path) = self.notices.show(&ctx, image)
+        if let Some(path) = self.notices.show(&ctx, beside_bar(&ctx, image))
             && let Err(error) = open::that_detached(&path)
         {
             self.warn([format!("{}: could not start a program to open it: {error}", path.display())]);
@@ -503,17 +509,47 @@ fn as_sentence(text: &str) -> String {
     chars.next().map_or_else(String::new, |first| first.to_uppercase().chain(chars).collect())
 }
 
+/// The width of a bar of progress whose text wants a width, in an image of a width, beside a button, points.
+fn bar_width(wanted: f32, image: f32, button: f32) -> f32 {
+    // In steps, so that a number that changes does not move the button.
+    let wanted = ((wanted / 40.0).ceil() * 40.0).max(300.0);
+    // In a wide image the caption stands beside the bar.
+    let caption = if image < ROOM_BESIDE_PROGRESS { 0.0 } else { 334.0 };
+    wanted.min(image - button - 26.0 - caption).max(60.0)
+}
+
 /// Shows a progress bar in the corner of the image, `row` from the top, and a button that stops the work. Returns whether the
 /// button was clicked.
 fn progress_overlay(ui: &mut Ui, picture: Rect, row: u8, fraction: f32, text: &str, tip: &str) -> bool {
     let button_width = 60.0;
-    let width = (picture.width() - button_width - 26.0).clamp(60.0, 300.0);
+    // The text is painted in the bar's own colour.
+    let font = TextStyle::Button.resolve(ui.style());
+    let mut job = LayoutJob::simple_singleline(text.to_owned(), font, Color32::PLACEHOLDER);
+    let margins = 2.0 * ui.spacing().item_spacing.x;
+    let wanted = ui.painter().layout_job(job.clone()).size().x + margins;
+    let width = bar_width(wanted, picture.width(), button_width);
+    job.wrap = TextWrapping::truncate_at_width((width - margins).max(0.0));
+    let shown = ui.painter().layout_job(job);
     let corner = picture.left_top() + vec2(10.0, 10.0 + 26.0 * f32::from(row));
     let bar = Rect::from_min_size(corner, vec2(width, 20.0));
-    ui.put(bar, ProgressBar::new(fraction).text(text).corner_radius(4));
+    ui.put(bar, ProgressBar::new(fraction).text(shown).corner_radius(4));
     let button = Rect::from_min_size(bar.right_top() + vec2(6.0, 0.0), vec2(button_width, 20.0));
     let cancel = ui.put(button, egui::Button::new("Cancel"));
     // Several of them may be shown: a screen reader says which.
     cancel.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Cancel: {text}")));
     cancel.hover_tooltip(tip).clicked()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bar_width;
+
+    #[test]
+    fn bars_of_progress_widen_to_their_text_and_stay_in_the_image() {
+        assert_eq!(bar_width(120.0, 600.0, 60.0), 300.0);
+        assert_eq!(bar_width(390.0, 600.0, 60.0), 400.0);
+        assert_eq!(bar_width(390.0, 450.0, 60.0), 364.0);
+        assert_eq!(bar_width(390.0, 90.0, 60.0), 60.0);
+        assert_eq!(bar_width(390.0, 720.0, 60.0), 300.0, "the caption has its place");
+    }
 }

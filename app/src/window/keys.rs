@@ -8,14 +8,14 @@ use egui::{
 
 use crate::window::control::HoverTooltip;
 
-use super::key_press::{are_held, consume};
+use super::key_press::{are_held, consume, consume_all};
 use super::keymap::{Keymap, shortcut};
 use super::page::Page;
 use super::purpose::Purpose;
 use super::theme;
 
-/// The commands whose keys were pressed in this pass, unless a text field takes the keys. Keys of commands that are not `allowed` stay
-/// for others.
+/// The commands whose keys were pressed in this pass, some as often as the key was, unless a text field takes the keys. Keys of commands
+/// that are not `allowed` stay for others.
 pub(crate) fn pressed(ctx: &egui::Context, allowed: impl Fn(&Command) -> bool) -> Vec<Command> {
     let typing = ctx.egui_wants_keyboard_input();
     let editing = ctx.text_edit_focused();
@@ -35,11 +35,24 @@ pub(crate) fn pressed(ctx: &egui::Context, allowed: impl Fn(&Command) -> bool) -
         if editing && matches!(command, Command::Undo | Command::Redo) {
             continue;
         }
-        if consume(ctx, modifiers, logical_key) {
-            commands.push(command.clone());
-        }
+        let times = consume_all(ctx, modifiers, logical_key);
+        let times = if counts(command) { times } else { times.min(1) };
+        commands.extend(std::iter::repeat_n(command, times).cloned());
     }
     commands
+}
+
+/// Whether a command runs as often as its key was pressed, even if that happened within one slow pass.
+fn counts(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Undo
+            | Command::Redo
+            | Command::StepForward
+            | Command::StepBack
+            | Command::ScaleUp
+            | Command::ScaleDown
+    )
 }
 
 fn is_function_key(key: Key) -> bool {

@@ -4,7 +4,7 @@ use egui::{Color32, Pos2, Response, Sense, Stroke, Ui, Vec2};
 use glam::Vec3;
 
 use super::theme;
-use crate::window::control::HoverTooltip;
+use crate::window::control::{HoverTooltip, spoken_value};
 
 /// The labels of a sphere.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +56,13 @@ pub(crate) fn sphere(
         painter.circle_stroke(handle, 6.0, Stroke::new(2.0, theme::accent()));
     }
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, of.name));
+    let [across, rise] =
+        [seen.x.atan2(seen.z), seen.y.clamp(-1.0, 1.0).asin()].map(|angle| f64::from(angle.to_degrees()));
+    spoken_value(&response, across, [-180.0, 180.0], || {
+        let side = if across < 0.0 { "left" } else { "right" };
+        let height = if rise < 0.0 { "below" } else { "above" };
+        format!("{:.0}° from the {side}, {:.0}° from {height}", across.abs(), rise.abs())
+    });
     response.hover_tooltip(format!(
         "Drag to set where {} comes from, as seen by the camera. A hollow handle is behind the sphere.",
         of.what

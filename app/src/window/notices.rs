@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Align2, Area, Color32, Frame, Id, Order, Rect, RichText, Ui, vec2};
+use egui::{Align2, Area, Color32, Frame, Id, LayerId, Order, Rect, RichText, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{ICON_CHECK_CIRCLE, ICON_CLOSE, ICON_ERROR, ICON_WARNING};
 
@@ -122,10 +122,11 @@ impl Notices {
         let waiting = self.list.len().saturating_sub(visible.len());
         let width = WIDTH.min(image.width() - 2.0 * MARGIN).max(160.0);
         let (mut closed, mut opened) = (Vec::new(), None);
-        Area::new(Id::unique("notices"))
+        let layer = LayerId::new(Order::Middle, Id::unique("notices"));
+        Area::new(layer.id)
             .pivot(Align2::RIGHT_BOTTOM)
             .fixed_pos(image.right_bottom() - vec2(MARGIN, MARGIN))
-            .order(Order::Foreground)
+            .order(layer.order)
             .show(ctx, |ui| {
                 ui.set_max_width(width);
                 if waiting > 0 {
@@ -147,6 +148,7 @@ impl Notices {
                     opened = opens.or(opened.take());
                 }
             });
+        send_below(ctx, layer);
         self.list.retain(|notice| !closed.contains(&notice.id));
         opened
     }
@@ -158,6 +160,22 @@ impl Notices {
         let room = MAX.saturating_sub(passing.clone().count()).max(1);
         let errors = self.list.iter().filter(is_error).take(room);
         errors.chain(passing).map(|notice| notice.id).collect()
+    }
+}
+
+/// Sends the messages below windows and the bar of tools, over which they are when they are new or were clicked.
+fn send_below(ctx: &egui::Context, messages: LayerId) {
+    let layers: Vec<LayerId> = ctx.memory(|memory| {
+        let beside = |layer: &LayerId| layer.order == messages.order && memory.areas().is_visible(layer);
+        memory.layer_ids().filter(beside).collect()
+    });
+    if layers.first() == Some(&messages) {
+        return;
+    }
+    // In their own order, which stays.
+    for layer in layers.into_iter().filter(|layer| *layer != messages) {
+        ctx.move_to_top(layer);
+        ctx.request_repaint();
     }
 }
 

@@ -51,13 +51,44 @@ impl Found {
         match self {
             Self::Command(info) => keymap.first(info).unwrap_or_default(),
             Self::Layer(_) => "add layer".to_owned(),
-            Self::Setting(path, _) => (*path).to_owned(),
+            Self::Setting(path, _) => place_of(path).unwrap_or_else(|| (*path).to_owned()),
         }
     }
 
     fn fit(&self, typed: &str, keymap: &Keymap) -> Option<Fit> {
-        fit(typed, self.name(), &[self.text(), &self.aside(keymap)])
+        // Settings are also found by their paths, as the command line calls them.
+        let path = if let Self::Setting(path, _) = self { *path } else { "" };
+        fit(typed, self.name(), &[self.text(), &self.aside(keymap), path])
     }
+}
+
+/// Where the controls of settings are whose paths begin so. The settings of other paths are spread over several panels.
+const PLACES: [(&str, &str); 17] = [
+    ("brush.", "Brushes"),
+    ("body.scalp.", "Scalp"),
+    ("body.face.", "Face"),
+    ("body.colliders.", "Colliders"),
+    ("body.brows.", "Body and motion › Brows and lashes"),
+    ("motion.", "Body and motion › Motion"),
+    ("hair.ties.", "Ties and scissors"),
+    ("hair.import.", "Hairstyle"),
+    ("look.", "Look"),
+    ("simulation.", "Simulation"),
+    ("shadow.", "Shadow"),
+    ("lights.", "Light"),
+    ("sound.", "Sound"),
+    ("recording.", "Recording"),
+    ("reference.", "Picture › Reference picture"),
+    ("picture.clusters.", "Picture › Clusters"),
+    ("picture.body_look.", "Body look"),
+];
+
+/// Where the control of the setting at a path is, if that is known.
+fn place_of(path: &str) -> Option<String> {
+    if let Some(name) = path.strip_prefix("hair.groom.") {
+        return super::panels::hair::section_of(name).map(|section| format!("Hairstyle › {section}"));
+    }
+    PLACES.iter().find(|(begin, _)| path.starts_with(begin)).map(|(_, place)| (*place).to_owned())
 }
 
 /// The settings that have a control in the panels: those of a project and those of the brush.
@@ -168,6 +199,19 @@ mod tests {
         assert!(
             matches("", &Keymap::default(), |_| true).iter().all(|found| matches!(found, Found::Command(_)))
         );
+    }
+
+    #[test]
+    fn settings_of_one_name_say_where_they_are() {
+        let keymap = Keymap::default();
+        let found = matches("curl radius", &keymap, |_| true);
+        let found = found.iter().filter(|found| found.name() == "Curl radius");
+        let mut places: Vec<_> = found.map(|found| found.aside(&keymap)).collect();
+        places.sort();
+        assert_eq!(places, ["Brushes", "Hairstyle › Texture"]);
+        for (begin, place) in PLACES {
+            assert!(SETTINGS.iter().any(|(path, _)| path.starts_with(begin)), "{begin}: {place}");
+        }
     }
 
     #[test]

@@ -136,9 +136,7 @@ impl Recorder {
             let (what, done, total) = match progress {
                 Progress::Loading { what } => (what, 0, 1),
                 Progress::Loaded { .. } => ("Preparing the first frame".to_owned(), 0, 1),
-                Progress::Simulating { done, total } => {
-                    ("Simulating to the first frame".to_owned(), done, total)
-                }
+                Progress::Simulating { done, total } => ("Simulating".to_owned(), done, total),
                 Progress::Frame { done, total, .. } => ("Frame".to_owned(), done, total),
                 Progress::Kept { done, total } => ("Kept".to_owned(), done, total),
                 Progress::Comparing { what, done, total, .. } => (what, done, total),

@@ -23,7 +23,7 @@ fn files_that_are_not_projects_are_rejected() {
     let dir = tempfile::tempdir().expect("a folder");
     let write = |name: &str, bytes: &[u8]| std::fs::write(dir.path().join(name), bytes).expect("a file");
     write("empty.lovelock", b"");
-    assert_rejected_everywhere(dir.path(), "empty.lovelock", "line 1");
+    assert_rejected_everywhere(dir.path(), "empty.lovelock", "is empty");
 
     write("newer.lovelock", b"(version: 99, sparkle: Yes(3))");
     assert_rejected_everywhere(dir.path(), "newer.lovelock", "newer");

@@ -21,14 +21,19 @@ impl LivePane {
     pub fn figures_label(&self, ms: f64) -> String {
         let backend = self.adapter.backend_label();
         let mut parts = vec![format!("{ms:.1} ms {backend}"), bytes_label(self.shadow_bytes)];
-        match &self.error {
-            LiveError::NotMeasured => {}
-            LiveError::Reference => parts.push("the reference".to_owned()),
-            LiveError::Measured { rmse, .. } => parts.push(format!("error {rmse:.4}")),
-            LiveError::Refused(_) => parts.push("no reference".to_owned()),
-        }
+        parts.extend(self.error_label());
         parts.extend(self.flip.map(|flip| format!("FLIP {flip:.4}")));
         parts.join(" · ")
+    }
+
+    /// The error, such as `error 0.0210`; `None` if none was measured yet.
+    pub fn error_label(&self) -> Option<String> {
+        match &self.error {
+            LiveError::NotMeasured => None,
+            LiveError::Reference => Some("the reference".to_owned()),
+            LiveError::Measured { rmse, .. } => Some(format!("error {rmse:.4}")),
+            LiveError::Refused(_) => Some("no reference".to_owned()),
+        }
     }
 
     /// What the numbers of [`LivePane::figures_label`] are, a paragraph each.

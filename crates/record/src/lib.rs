@@ -63,6 +63,6 @@ pub use take::{
     TakeWriter, hairstyle_fingerprint, mix_guides,
 };
 pub use unfinished::{
-    Kept, UnfinishedKind, discard_unfinished, has_left, has_older, is_unfinished, keep_unfinished,
-    tidy_finished, unfinished_outs,
+    Kept, UnfinishedKind, can_be_kept, discard_unfinished, has_left, has_older, is_unfinished,
+    keep_unfinished, tidy_finished, unfinished_outs,
 };

@@ -96,6 +96,16 @@ pub fn unfinished_outs(out: &Path) -> Vec<PathBuf> {
     std::iter::once(out.to_owned()).chain(cuts).filter(|out| is_unfinished(out)).collect()
 }
 
+/// Whether enough seems to be there for [`keep_unfinished`]. Changes nothing.
+pub fn can_be_kept(out: &Path) -> bool {
+    match UnfinishedKind::of(out) {
+        Some(UnfinishedKind::Film) => tables::plays(out),
+        Some(UnfinishedKind::Sequence) => true,
+        Some(UnfinishedKind::Take) => TakeReader::open(&part_path(out)).is_ok_and(|take| take.frames() > 0),
+        None => false,
+    }
+}
+
 /// Makes a film, sequence or take of what an interrupted recording to `out` left. A file of that name stays: then the kept one gets a number.
 /// Returns `None` if too little is there.
 ///
@@ -235,6 +245,7 @@ mod tests {
 
         let name = left.path().join("dance ü.mp4");
         fs::write(&name, b"an older film").unwrap();
+        assert!(can_be_kept(&name));
         let kept = keep_unfinished(&name).unwrap().expect("a film");
         assert_eq!((kept.frames, kept.path.as_path()), (16, left.path().join("dance ü-1.mp4").as_path()));
         assert_eq!(decoded(&kept.path), whole[..16]);
@@ -264,6 +275,7 @@ mod tests {
             fs::rename(path, folder.path().join(aside)).unwrap();
         }
         assert!(is_unfinished(&film));
+        assert!(!can_be_kept(&film));
         assert_eq!(keep_unfinished(&film).unwrap(), None, "nothing that plays");
         assert!(files.iter().all(|path| path.exists()));
         // Control: one that ends well replaces it.

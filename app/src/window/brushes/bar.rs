@@ -1,6 +1,6 @@
 //! The bar of tools over the image.
 
-use egui::{Area, Button, Frame, Id, Order, Rect, Ui, vec2};
+use egui::{Area, Button, Context, Frame, Id, LayerId, Order, Rect, Ui, vec2};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_AC_UNIT, ICON_AIR, ICON_BRUSH, ICON_CALL_SPLIT, ICON_COMPRESS, ICON_CONTENT_CUT, ICON_CYCLONE,
@@ -49,12 +49,24 @@ pub(super) fn tooltip(tool: Tool) -> String {
     format!("{name}. {}{inverse}\n\nShift smooths.", tool.text())
 }
 
+fn bar_layer() -> LayerId {
+    LayerId::new(Order::Middle, Id::unique("brush tools"))
+}
+
+/// The part of the image that the bar leaves free.
+pub(in crate::window) fn beside_bar(ctx: &Context, image: Rect) -> Rect {
+    let layer = bar_layer();
+    let bar = ctx.memory(|memory| memory.area_rect(layer.id).filter(|_| memory.areas().is_visible(&layer)));
+    bar.map_or(image, |bar| image.with_min_x(image.left().max(bar.right())))
+}
+
 impl Brushes {
     /// Shows the bar over the image at `place`.
     pub(super) fn bar(&mut self, ui: &Ui, place: Rect) {
         let rows = (((place.height() - 4.0 * AIR) / (BUTTON + 2.0)) as usize).clamp(4, Tool::ALL.len());
-        Area::new(Id::unique("brush tools"))
-            .order(Order::Middle)
+        let layer = bar_layer();
+        Area::new(layer.id)
+            .order(layer.order)
             .fixed_pos(place.left_top() + vec2(AIR, AIR + 24.0))
             .constrain_to(place)
             .show(ui.ctx(), |ui| {

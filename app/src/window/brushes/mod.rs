@@ -14,6 +14,8 @@ use lovelock_base::settings::{Choices as _, Settings as _};
 use lovelock_brush::{BrushMirror, BrushSettings, Tool};
 use serde::{Deserialize, Serialize};
 
+pub(in crate::window) use bar::beside_bar;
+
 use super::overlay::pick::SeenHair;
 use pointer::PointerStroke;
 use strokes::Strokes;

@@ -24,6 +24,8 @@ const MAX_SAMPLES: usize = 1 << 21;
 pub(super) struct Strokes {
     last: u64,
     open: Vec<OpenStroke>,
+    /// The label of the stroke that has added a layer in this pass.
+    adds: Option<String>,
     /// Which guides are protected.
     pub(super) frozen: Arc<[bool]>,
     /// The stroke that changed that last.
@@ -64,7 +66,17 @@ pub(super) fn layer_of(project: &mut Project, selected: Option<u32>) -> Option<(
     known.or_else(|| Some((stack.push(Layer::of(Hand::default()))?, true)))
 }
 
+/// The label of a stroke's undo step.
+fn label_of(tool: Tool) -> String {
+    tool.names().1.to_lowercase()
+}
+
 impl Window {
+    /// The label of the undo step of this pass, if a stroke has added a layer in it.
+    pub(in crate::window) fn take_stroke_label(&mut self) -> Option<String> {
+        self.panels.brushes.strokes.adds.take()
+    }
+
     /// Begins a stroke in a layer; returns its number.
     pub(super) fn begin_stroke(
         &mut self,
@@ -85,6 +97,7 @@ impl Window {
         let (edits, before) = (left.clone(), left.clone());
         let gesture = self.document.gesture();
         let added = if is_new { Some(gesture) } else { added };
+        strokes.adds = is_new.then(|| label_of(tool));
         if strokes.recorded.len() < StrokeFile::MAX_STROKES && strokes.samples < MAX_SAMPLES {
             let settings = settings.clone();
             strokes.recorded.push(RecordedStroke { tool, inverted, settings, samples: Vec::new() });
@@ -151,7 +164,7 @@ impl Window {
             self.cancel_strokes();
             return;
         }
-        let (gesture, label) = (strokes.open[at].gesture, strokes.open[at].tool.names().1.to_lowercase());
+        let (gesture, label) = (strokes.open[at].gesture, label_of(strokes.open[at].tool));
         let acts = strokes.open[at].before != brushed.edits;
         let is_new = strokes.open[at].left != brushed.edits;
         if is_new {

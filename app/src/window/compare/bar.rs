@@ -165,6 +165,7 @@ fn pair(ui: &mut Ui, layout: &mut CompareLayout, project: &Project) {
             })
             .response;
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name));
+        response.hover_tooltip("The pane that the wipe shows on this side.");
     }
     if pair != before {
         layout.pair = pair;
@@ -184,6 +185,7 @@ fn shows(ui: &mut Ui, layout: &mut CompareLayout) {
         })
         .response;
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "What panes show"));
+    response.hover_tooltip("The quantity that all panes show.");
     let Some(_) = layout.shows.colors() else { return };
     let response = egui::ComboBox::from_id_salt("largest")
         .selected_text(format!("to {}", layout.largest))
@@ -196,6 +198,7 @@ fn shows(ui: &mut Ui, layout: &mut CompareLayout) {
         .response;
     response
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Largest value of the scale"));
+    response.hover_tooltip("The value at the end of the colour scale.");
 }
 
 /// A button that stays pressed.

@@ -16,6 +16,8 @@ use crate::window::{camera_control, theme};
 
 /// Distance from the line of the wipe within which the pointer grabs it, points.
 const REACH: f32 = 9.0;
+/// Width of a pane from which on all its figures have room, points. A narrower one shows its error.
+const ALL_FIGURES: f32 = 300.0;
 
 /// The fewest pixels that the limit per pane allows, however many panes there are.
 const LEAST_PIXELS: f32 = 640.0 * 360.0;
@@ -239,14 +241,17 @@ impl Window {
         if let Some(age) = age_label(newest - pane.time_secs) {
             said = format!("{said} · {age}");
         }
-        let line = Viewport::caption(ui, place, corner, &said, theme::bright());
+        let short = pane.error_label().filter(|_| place.width() < ALL_FIGURES);
+        let shown = unbroken(short.as_deref().unwrap_or(&said));
+        let line = Viewport::caption(ui, place, corner, &shown, theme::bright());
         let response = ui.interact(
             line,
             Id::unique(("figures", index, place.min.x.to_bits(), place.min.y.to_bits())),
             Sense::hover(),
         );
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &said));
-        response.hover_tooltip(pane.figures_text());
+        let text = pane.figures_text();
+        response.hover_tooltip(if short.is_some() { format!("{said}\n\n{text}") } else { text });
     }
 
     /// The name of the pane whose image is visible, in a corner.
@@ -302,6 +307,11 @@ fn frame(ui: &Ui, cell: Rect) {
     ui.painter().rect_stroke(cell, 0.0, Stroke::new(2.0, theme::accent()), StrokeKind::Inside);
 }
 
+/// A line whose items, between dots, are not broken where it is too long for its pane.
+fn unbroken(line: &str) -> String {
+    line.replace(' ', "\u{a0}").replace("·\u{a0}", "· ")
+}
+
 /// The age of a pane as text.
 fn age_label(secs: f64) -> Option<String> {
     match secs {
@@ -315,6 +325,11 @@ fn age_label(secs: f64) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_break_at_dots_alone() {
+        assert_eq!(unbroken("5.6 ms CPU · 48.3 MiB"), "5.6\u{a0}ms\u{a0}CPU\u{a0}· 48.3\u{a0}MiB");
+    }
 
     #[test]
     fn a_pane_says_its_age_when_it_has_one() {

@@ -10,6 +10,7 @@ mod popup;
 mod reveal;
 pub(crate) mod rows;
 mod setting;
+mod spoken;
 mod stops;
 mod tooltip;
 
@@ -29,6 +30,7 @@ pub(crate) use reveal::{
     end_pass as end_reveal, is_looking, reveal, section as revealed_section, shown as revealed,
 };
 pub(crate) use setting::{all_settings, any_setting, entry, setting, settings};
+pub(crate) use spoken::spoken_value;
 pub(crate) use tooltip::{HoverTooltip, keep_free_area};
 
 use super::theme;

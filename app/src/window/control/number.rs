@@ -7,6 +7,7 @@ use egui::{Id, Key, Response, Slider, SliderClamping, Ui, Widget};
 use lovelock_base::settings::{Counts, Info, Range, Unit};
 
 use super::row;
+use super::spoken::spoken_slider;
 
 /// Width that a slider leaves for its number, points.
 pub(super) const NUMBER_WIDTH: f32 = 78.0;
@@ -66,7 +67,7 @@ impl Number {
             let opens_menu = is_secondary(ui);
             ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH).max(40.0);
             let [low, high] = limits.range;
-            Slider::from_get_set(range.clone(), |new| {
+            let response = Slider::from_get_set(range.clone(), |new| {
                 // The slider rounds to what it shows; that alone is no change.
                 let shown = 0.5 * 0.1_f64.powi(decimals as i32);
                 let old = *value * factor;
@@ -87,7 +88,9 @@ impl Number {
             .fixed_decimals(decimals)
             .suffix(suffix)
             .custom_parser(limits.parser())
-            .ui(ui)
+            .ui(ui);
+            spoken_slider(ui, &response, [low, high], || format!("{:.decimals$}{suffix}", *value * factor));
+            response
         })
     }
 }
@@ -167,13 +170,15 @@ pub(super) fn count(ui: &mut Ui, info: &Info, counts: &Counts, value: &mut u64, 
         });
         // Whole numbers that are shown in a larger unit have digits after the point.
         let slider = if factor == 1.0 { slider.integer() } else { slider.fixed_decimals(decimals) };
-        slider
+        let response = slider
             .suffix(suffix)
             .custom_parser(limits.parser())
             .logarithmic(counts.logarithmic)
             .clamping(SliderClamping::Never)
             .update_while_editing(false)
-            .ui(ui)
+            .ui(ui);
+        spoken_slider(ui, &response, range, || format!("{:.decimals$}{suffix}", *value as f64 * factor));
+        response
     })
 }
 

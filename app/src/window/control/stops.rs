@@ -6,6 +6,7 @@ use egui::{Response, Slider, SliderClamping, Ui, Widget};
 use lovelock_base::settings::{Counts, Info};
 
 use super::number::{NUMBER_WIDTH, is_escaped, is_secondary, typed};
+use super::spoken::spoken_slider;
 use super::{row, say};
 
 /// The row of a whole number whose slider steps through what is offered. Any number of its range can be typed; another one is refused
@@ -19,7 +20,7 @@ pub(super) fn stops(ui: &mut Ui, info: &Info, counts: &Counts, value: &mut u64, 
         let parser = parser(ui, info, counts, *value, &entered);
         ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH).max(40.0);
         let [low, high] = counts.soft.map(|bound| bound as f64);
-        Slider::from_get_set(low..=high, |new| {
+        let response = Slider::from_get_set(low..=high, |new| {
             if let Some(new) = new.filter(|new| new.is_finite() && !opens_menu) {
                 *value = match entered.take() {
                     Some(entered) => entered,
@@ -35,7 +36,10 @@ pub(super) fn stops(ui: &mut Ui, info: &Info, counts: &Counts, value: &mut u64, 
         .logarithmic(true)
         .clamping(SliderClamping::Never)
         .update_while_editing(false)
-        .ui(ui)
+        .ui(ui);
+        let range = counts.hard.map(|bound| bound as f64);
+        spoken_slider(ui, &response, range, || format!("{value}{}", info.unit.suffix));
+        response
     })
 }
 

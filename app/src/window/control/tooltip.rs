@@ -34,7 +34,10 @@ fn describe(response: &Response, text: &str) {
     }
     response.ctx.accesskit_node_builder(response.id, |node| {
         if node.description().is_none() {
-            node.set_description(text);
+            let value =
+                node.value().filter(|value| !value.is_empty() && is_said_with_description(node.role()));
+            let description = value.map_or_else(|| text.to_owned(), |value| format!("{value}. {text}"));
+            node.set_description(description);
         }
         let has_name = node.role() == Role::Label
             || !node.labelled_by().is_empty()
@@ -43,6 +46,12 @@ fn describe(response: &Response, text: &str) {
             node.set_label(text);
         }
     });
+}
+
+/// Whether the text of a control's value belongs to its description, because screen readers do not get it otherwise: on Linux they get
+/// that of text fields alone.
+fn is_said_with_description(role: Role) -> bool {
+    cfg!(target_os = "linux") && matches!(role, Role::ComboBox | Role::Slider | Role::SpinButton)
 }
 
 /// Shows `text` beside `whole`, of which `response` is a part, whether the part is enabled or not.

@@ -136,16 +136,27 @@ const TEXTURE: [&str; 12] = [
 const COUNTS: [&str; 4] = ["wisps", "strands_per_wisp", "segments_per_strand", "seed"];
 
 fn file_tooltip() -> String {
-    format!("Loads a hair file: {}.", HAIR_FORMATS.map(|format| format.label).join(", "))
+    let mut labels = HAIR_FORMATS.map(|format| format.label).to_vec();
+    // Text and binary files of a format stand beside each other.
+    labels.dedup();
+    format!("Loads a hair file: {}.", labels.join(", "))
+}
+
+/// The titles of the sections of a grown hairstyle, and their settings.
+const SECTIONS: [(&str, &[&str]); 4] =
+    [("Cut", &CUT), ("Shape", &SHAPE), ("Texture", &TEXTURE), ("Counts", &COUNTS)];
+
+/// The section with a setting of a grown hairstyle.
+pub(crate) fn section_of(name: &str) -> Option<&'static str> {
+    SECTIONS.iter().find(|(_, names)| names.contains(&name)).map(|(title, _)| *title)
 }
 
 fn grown(ui: &mut Ui, hair: &mut HairSection) {
     let default = hair.shipped_groom();
     let groom = &mut hair.groom;
-    section(ui, "Cut", true, |ui| settings(ui, &CUT, groom, &default));
-    section(ui, "Shape", true, |ui| settings(ui, &SHAPE, groom, &default));
-    section(ui, "Texture", true, |ui| settings(ui, &TEXTURE, groom, &default));
-    section(ui, "Counts", false, |ui| settings(ui, &COUNTS, groom, &default));
+    for (title, names) in SECTIONS {
+        section(ui, title, title != "Counts", |ui| settings(ui, names, groom, &default));
+    }
     restore_all(ui, "Defaults", "Restores the defaults of this hairstyle.", groom, &default);
 }
 

@@ -81,9 +81,12 @@ fn list(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, (axes, head)
         for (i, light) in lights.iter().enumerate() {
             ui.selectable_value(selected, i, &light.name).hover_tooltip("Shows the controls of this light.");
         }
-        if lights.len() < MAX_LIGHTS && ui.button("+").hover_tooltip("Adds a light.").clicked() {
-            *selected = lights.len();
-            lights.push(Light { name: format!("Light {}", lights.len() + 1), ..Light::default() });
+        if lights.len() < MAX_LIGHTS {
+            let add = ui.button("+").accessible_name("Add a light");
+            if add.hover_tooltip("Adds a light.").clicked() {
+                *selected = lights.len();
+                lights.push(Light { name: format!("Light {}", lights.len() + 1), ..Light::default() });
+            }
         }
     });
     *selected = (*selected).min(lights.len().saturating_sub(1));
@@ -99,6 +102,7 @@ fn list(ui: &mut Ui, lights: &mut Vec<Light>, selected: &mut usize, (axes, head)
         }
         ui.vertical(|ui| {
             ui.add(egui::TextEdit::singleline(&mut light.name).desired_width(100.0))
+                .accessible_name("Name of this light")
                 .hover_tooltip("Name of this light.");
             removed = ui.button("Remove").hover_tooltip("Removes this light.").clicked();
         });

@@ -11,7 +11,7 @@ use lovelock_render::PictureSettings;
 
 use crate::window::command::Command;
 use crate::window::control::HoverTooltip;
-use crate::window::control::{row, setting};
+use crate::window::control::{row, setting, spoken_value};
 use crate::window::purpose::Purpose;
 use crate::window::readings::LoadedSurroundings;
 use crate::window::theme;
@@ -92,6 +92,8 @@ fn thumbnail(ui: &mut Ui, picture: &Panorama, turn: &mut f32) -> Response {
     }
     response
         .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Picture of the surroundings"));
+    let degrees = f64::from(turn.to_degrees());
+    spoken_value(&response, degrees, [-180.0, 180.0], || format!("{degrees:.0}°"));
     response.on_hover_cursor(CursorIcon::ResizeHorizontal).hover_tooltip(
         "Drag to turn the surroundings; the width of the picture is a full turn. Double-click to reset. The middle is in \
          front of the figure, and the ring marks the strongest light.",

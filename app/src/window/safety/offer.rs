@@ -215,6 +215,10 @@ fn one(ui: &mut Ui, k: usize, unsaved: &Unsaved) -> Option<Answer> {
     ui.horizontal(|ui| {
         let recover =
             ui.button("Recover").hover_tooltip("Opens the project with these changes and its undo steps.");
+        // Nothing is lost by Enter: the other answers stay in File, Recover.
+        if k == 0 && ui.memory(|memory| memory.focused().is_none()) {
+            recover.request_focus();
+        }
         if recover.clicked() {
             answer = Some(Answer::Recover(k));
         }

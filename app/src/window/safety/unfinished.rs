@@ -1,5 +1,6 @@
 //! The dialog that offers recordings that were interrupted.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::{Context, Id, Modal, RichText, Ui};
@@ -8,7 +9,7 @@ use lovelock_base::words::counted;
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::unfinished::{Interrupted, Job, Recordings, Running};
-use lovelock_record::{UnfinishedKind, discard_unfinished, keep_unfinished};
+use lovelock_record::{UnfinishedKind, can_be_kept, discard_unfinished, keep_unfinished};
 
 use super::ago::ago;
 use crate::window::control::HoverTooltip;
@@ -25,6 +26,8 @@ const TAKE_BEGINS_SECS: f64 = 3.0;
 pub(super) struct Works {
     recordings: Recordings,
     list: Vec<Interrupted>,
+    /// Those of which too little is there to keep.
+    too_short: Vec<PathBuf>,
     is_open: bool,
     /// The one that shall be discarded, while the user is asked.
     asked: Option<usize>,
@@ -60,6 +63,8 @@ impl Works {
         if let Some(again) = &self.again {
             self.list.retain(|work| work.job.out != again.job.out);
         }
+        let outs = self.list.iter().map(|work| &work.job.out);
+        self.too_short = outs.filter(|out| !can_be_kept(out)).cloned().collect();
         (self.is_open, self.asked) = (!self.list.is_empty(), None);
         self.is_open
     }
@@ -113,7 +118,7 @@ impl Window {
             ui.set_width(520.0);
             match works.asked.and_then(|k| Some((k, works.list.get(k)?))) {
                 Some((k, work)) => ask(ui, k, work),
-                None => list(ui, &works.list, busy),
+                None => list(ui, works, busy),
             }
         });
         let closes = modal.should_close().then_some(Answer::Later);
@@ -183,16 +188,16 @@ impl Window {
     }
 }
 
-fn list(ui: &mut Ui, works: &[Interrupted], busy: bool) -> Option<Answer> {
+fn list(ui: &mut Ui, works: &Works, busy: bool) -> Option<Answer> {
     let mut answer = None;
     ui.heading("Recordings were interrupted");
-    for (k, work) in works.iter().enumerate().take(SHOWN) {
+    for (k, work) in works.list.iter().enumerate().take(SHOWN) {
         ui.separator();
-        answer = answer.or(one(ui, k, work, busy));
+        answer = answer.or(one(ui, k, work, (busy, works.too_short.contains(&work.job.out))));
     }
-    if works.len() > SHOWN {
+    if works.list.len() > SHOWN {
         ui.separator();
-        ui.label(RichText::new(format!("{} more follow.", works.len() - SHOWN)).color(theme::quiet()));
+        ui.label(RichText::new(format!("{} more follow.", works.list.len() - SHOWN)).color(theme::quiet()));
     }
     ui.separator();
     let later = ui.button("Decide later").hover_tooltip("Keeps everything: File, Recover offers it again.");
@@ -202,7 +207,7 @@ fn list(ui: &mut Ui, works: &[Interrupted], busy: bool) -> Option<Answer> {
     answer
 }
 
-fn one(ui: &mut Ui, k: usize, work: &Interrupted, busy: bool) -> Option<Answer> {
+fn one(ui: &mut Ui, k: usize, work: &Interrupted, (busy, is_too_short): (bool, bool)) -> Option<Answer> {
     let mut answer = None;
     let name = work.job.out.file_name().unwrap_or_default().to_string_lossy();
     ui.label(RichText::new(format!("{name}, a {}", work.kind.label())).strong());
@@ -232,7 +237,9 @@ fn one(ui: &mut Ui, k: usize, work: &Interrupted, busy: bool) -> Option<Answer> 
             UnfinishedKind::Sequence => "Lists the complete images in the manifest of the folder.",
             UnfinishedKind::Take => "Makes a take of the frames that were recorded, up to the last second.",
         };
-        if ui.button("Keep what is there").hover_tooltip(tip).clicked() {
+        let keep = ui.add_enabled(!is_too_short, egui::Button::new("Keep what is there"));
+        let why_not = "Less than a second was recorded, too little to keep.";
+        if keep.hover_tooltip(tip).disabled_hover_tooltip(why_not).clicked() {
             answer = Some(Answer::Keep(k));
         }
         if ui.button("Discard…").hover_tooltip("Asks, then removes what was recorded.").clicked() {

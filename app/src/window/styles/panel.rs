@@ -122,8 +122,8 @@ fn chips(ui: &mut Ui, browser: &mut Browser) {
         for tag in browser.all_tags() {
             let on = browser.tags.contains(&tag);
             let text = egui::RichText::new(&tag).small();
-            let chip =
-                ui.selectable_label(on, text).hover_tooltip(format!("Shows only styles that are {tag}."));
+            let tip = format!("Shows only styles with the tag “{tag}”.");
+            let chip = ui.selectable_label(on, text).hover_tooltip(tip);
             if chip.clicked() && !browser.tags.remove(&tag) {
                 browser.tags.insert(tag);
             }

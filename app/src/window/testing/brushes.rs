@@ -103,6 +103,12 @@ fn each_tool_changes_hair_by_one_undo_step_and_undo_restores_the_project() {
         let hand = edits(&harness).unwrap_or_else(|| panic!("{name} made no layer"));
         assert!(!hand.is_empty(), "{name} did nothing");
         assert_eq!(of(&harness).document.history().undo_len(), steps + 1, "{name}: one step");
+        let label = of(&harness).document.history().undo_label();
+        assert_eq!(
+            label,
+            Some(name.to_lowercase().as_str()),
+            "also of the first stroke, which adds the layer"
+        );
         key(&mut harness, CTRL, Key::Z);
         assert_eq!(project(&harness), before, "{name}");
         wait(&mut harness, "the image of the hair of before", |window| {

@@ -57,6 +57,24 @@ fn every_shortcut_runs_only_its_command() {
 }
 
 #[test]
+fn undo_counts_every_press_of_its_key_within_one_pass() {
+    let mut harness = screen();
+    for (name, times) in [("Ctrl+Z", 3), ("Ctrl+S", 1)] {
+        let (modifiers, key) = key(name);
+        harness.state_mut().state.1.clear();
+        for _ in 0..3 {
+            for pressed in [true, false] {
+                let event = egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
+                // As one pass: the harness would make a pass of each event.
+                harness.input_mut().events.push(event);
+            }
+        }
+        harness.step();
+        assert_eq!(harness.state().state.1.len(), times, "{name}: {:?}", harness.state().state.1);
+    }
+}
+
+#[test]
 fn letters_typed_in_a_text_field_are_not_shortcuts() {
     let mut harness = screen();
     harness.get_by_label("Name").click();

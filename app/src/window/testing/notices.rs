@@ -1,7 +1,7 @@
 //! Messages in the corner of the window.
 
 use egui::accesskit::Role;
-use egui::vec2;
+use egui::{Id, LayerId, Order, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -41,6 +41,23 @@ fn a_message_disappears_or_is_closed() {
     // Twenty seconds in passes of a thirtieth of a second, far longer than a short message is shown.
     harness.run_steps(30 * 20);
     assert!(harness.query_by_label("one").is_none());
+}
+
+#[test]
+fn messages_lie_below_windows() {
+    let mut notices = Notices::default();
+    notices.push(Kind::Failed, "broken");
+    let mut harness = screen_of(vec2(640.0, 400.0), notices, |ui, notices: &mut Notices| {
+        let image = ui.max_rect();
+        notices.show(ui.ctx(), image);
+        egui::Window::new("Manual").default_pos([20.0, 20.0]).show(ui.ctx(), |ui| ui.label("text"));
+    });
+    harness.run_steps(4);
+    let layers: Vec<LayerId> = harness
+        .ctx
+        .memory(|memory| memory.layer_ids().filter(|layer| layer.order == Order::Middle).collect());
+    assert_eq!(layers.first(), Some(&LayerId::new(Order::Middle, Id::unique("notices"))));
+    assert_eq!(layers.len(), 2, "{layers:?}");
 }
 
 #[test]

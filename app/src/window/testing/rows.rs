@@ -3,6 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Event, Key, vec2};
 use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
 use lovelock_base::settings::Unit;
 use lovelock_project::Project;
 
@@ -21,6 +22,21 @@ fn row() -> Harness<'static, Shown<(f32, bool)>> {
             });
         }
     })
+}
+
+#[test]
+fn a_number_tells_screen_readers_its_range_and_its_unit() {
+    let harness = row();
+    let field = harness.get_by_role_and_label(Role::SpinButton, "Length");
+    let field = field.accesskit_node();
+    assert_eq!((field.min_numeric_value(), field.max_numeric_value()), (Some(2.0), Some(70.0)));
+    let rail = harness.get_by_role_and_label(Role::Slider, "Length");
+    let rail = rail.accesskit_node();
+    let said = rail.value().unwrap_or_default();
+    assert!(said.starts_with("27") && said.ends_with(" cm"), "{said}");
+    if cfg!(target_os = "linux") {
+        assert_eq!(rail.description(), Some(format!("{said}. Length of the longest hair.")));
+    }
 }
 
 #[test]

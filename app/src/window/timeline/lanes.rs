@@ -7,7 +7,7 @@ use super::scale::Scale;
 use super::zoom::{FRAMES_BELOW_SECS, tick_secs};
 use super::{Edited, Recorded, View, Zoom, sound, thumbnails};
 use crate::window::command::Command;
-use crate::window::control::HoverTooltip;
+use crate::window::control::{HoverTooltip, spoken_value};
 use crate::window::theme;
 
 const RULER: f32 = 22.0;
@@ -28,6 +28,7 @@ pub(super) fn ui(ui: &mut Ui, view: &View, zoom: &mut Zoom, edited: &mut Edited<
     let rect = Rect::from_min_max(whole.min + vec2(names, 0.0), whole.max);
     let finite = |secs: f64| if secs.is_finite() { secs.max(0.0) } else { 0.0 };
     let (duration, now) = (finite(view.duration_secs).max(1e-3), finite(view.time_secs));
+    spoken_value(&response, now, [0.0, duration], || format!("{now:.2} s"));
     magnify(ui, &response, rect, zoom, duration);
     let [from, to] = zoom.shown(duration);
     let scale = Scale::new(rect.x_range(), [from, to]);
@@ -179,6 +180,8 @@ fn points(ui: &Ui, rect: Rect, scale: Scale, edited: &mut Edited<'_>, duration: 
         let handle = Rect::from_center_size(pos2(x, rect.top() + RULER * 0.5), vec2(10.0, RULER));
         let response = ui.interact(handle, Id::unique(("timeline", label)), Sense::drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, label));
+        let secs = ends[i] as f64 / fps;
+        spoken_value(&response, secs, [0.0, duration.max(secs)], || format!("{secs:.2} s"));
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
             let frame = (scale.secs(at.x) * fps).round() as u64;
             ends[i] = if i == 0 { frame.min(ends[1].saturating_sub(1)) } else { frame.max(ends[0] + 1) };

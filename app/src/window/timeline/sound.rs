@@ -5,7 +5,7 @@ use lovelock_project::project::SoundSection;
 
 use super::SoundLane;
 use super::scale::Scale;
-use crate::window::control::HoverTooltip;
+use crate::window::control::{HoverTooltip, spoken_value};
 use crate::window::theme;
 
 /// Height of the lane, points.
@@ -17,9 +17,10 @@ const REACH: f32 = 5.0;
 pub(super) fn lane(ui: &Ui, lane: Rect, scale: Scale, sound: &SoundLane, section: &mut SoundSection) {
     let response = ui.interact(lane, Id::unique("timeline sound"), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Sound on the timeline"));
+    let (offset, most) = (section.offset_secs, SoundSection::MAX_OFFSET_SECS);
+    spoken_value(&response, offset, [-most, most], || format!("{offset:.2} s"));
     if response.dragged_by(PointerButton::Primary) {
         let secs = scale.secs_of(response.drag_delta().x);
-        let most = SoundSection::MAX_OFFSET_SECS;
         section.offset_secs = (section.offset_secs + secs).clamp(-most, most);
     }
     let hot = response.hovered() || response.dragged();

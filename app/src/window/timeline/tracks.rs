@@ -7,7 +7,7 @@ use lovelock_project::tracks::Track;
 
 use super::scale::Scale;
 use super::{Edited, View};
-use crate::window::control::HoverTooltip;
+use crate::window::control::{HoverTooltip, spoken_value};
 use crate::window::theme;
 
 /// Height of a track, points.
@@ -68,7 +68,7 @@ pub(super) fn ui(
             let writes = view.writing.targets.contains(&track.target);
             let label = track.label_in(stack);
             asked = head_ui(ui, head, i, (track, &label), writes).map(|what| (i, what)).or(asked);
-            sought = lane_ui(ui, lane, (scale, beats), i, (track, &label), writes).or(sought);
+            sought = lane_ui(ui, lane, (scale, beats, view.time_secs), i, (track, &label), writes).or(sought);
             if let Some(x) = scale.x_of(view.time_secs) {
                 let line = [pos2(x, lane.top() - 1.0), pos2(x, lane.bottom() + 1.0)];
                 ui.painter_at(lane.expand(1.0)).line_segment(line, Stroke::new(1.5, theme::accent()));
@@ -146,7 +146,7 @@ fn head_ui(
 fn lane_ui(
     ui: &Ui,
     lane: Rect,
-    (scale, beats): (Scale, &[f64]),
+    (scale, beats, now): (Scale, &[f64], f64),
     index: usize,
     (track, label): (&mut Track, &str),
     writes: bool,
@@ -156,6 +156,9 @@ fn lane_ui(
     let label = format!("Track {label}");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, &label));
     let own = range_of(track);
+    if let Some(value) = track.value_at(now).and_then(|value| value.first().copied()) {
+        spoken_value(&response, value, own, || format!("{value:.3}"));
+    }
     let dragged = ui.data(|data| data.get_temp::<Dragged>(id));
     let range = dragged.map_or(own, |dragged| dragged.range);
     let y = |value: f64| {

@@ -31,7 +31,7 @@ pub(super) fn ui(
     let mut action = None;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = Vec2::new(6.0, 4.0);
-        let other = ui.button(format!("{} Others", ICON_CASINO.codepoint));
+        let other = ui.button(format!("{} Others", ICON_CASINO.codepoint)).accessible_name("Others");
         if other.hover_tooltip("Shows other variants of the current hairstyle.").clicked() {
             action = Some(Action::Again);
         }

@@ -211,7 +211,17 @@ impl Document {
     /// Applies the edits of controls to the project at the time of `now`: values with a track are written to the track. `seen` is the
     /// project that the controls showed. Returns the control whose track refuses the edit, if there is one.
     pub fn edit_seen(&mut self, seen: &Project, edited: Project, now: Moment) -> Option<String> {
-        let label = changed_part(seen, &edited);
+        self.edit_seen_as(changed_part(seen, &edited), seen, edited, now)
+    }
+
+    /// As [`Document::edit_seen`], with the label of the undo step.
+    pub fn edit_seen_as(
+        &mut self,
+        label: &str,
+        seen: &Project,
+        edited: Project,
+        now: Moment,
+    ) -> Option<String> {
         let project = self.overdub.edit(self.history.project(), seen, edited, now);
         self.edit(label, project);
         self.overdub.take_refused()

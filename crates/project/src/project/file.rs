@@ -22,6 +22,9 @@ pub(crate) const LARGEST_BYTES: u64 = 64 << 20;
 /// The deepest nesting that is read. Projects use four levels.
 const DEEPEST: usize = 32;
 
+/// How many letters of a file that is none of ours a message has.
+const EXCERPT: usize = 20;
+
 /// Opens the project at `path`. Only files in its folder and below may be read.
 ///
 /// A project with missing files, values out of range or unknown fields opens with the rest; the problems say what is wrong.
@@ -108,6 +111,21 @@ pub(crate) fn text_options() -> ron::Options {
         .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
 }
 
+/// What a text begins with that no project or style begins with; `None` if it may be one of them.
+fn foreign_begin(text: &str) -> Option<String> {
+    let text = text.trim_start_matches('\u{feff}').trim();
+    // The whole, a comment or an extension of RON.
+    if text.starts_with(['(', '/', '#']) {
+        return None;
+    }
+    let excerpt: String = text.chars().take_while(|c| !c.is_control()).take(EXCERPT).collect();
+    Some(match excerpt.trim_end() {
+        _ if text.is_empty() => "is empty".to_owned(),
+        "" => "begins with a control character".to_owned(),
+        excerpt => format!("begins with “{excerpt}”"),
+    })
+}
+
 /// As [`parse_project`], for text that should be a `what`, with fields besides those of a project.
 pub(crate) fn parse_text(
     path: &Path,
@@ -126,6 +144,9 @@ pub(crate) fn parse_text(
             format!("{name}: line {}: {}; must be a {what}", error.span.start, error.code),
         )
     };
+    if let Some(found) = foreign_begin(text) {
+        return Err(ProjectError::input(path, format!("{name}: {found}; must be a Lovelock {what}")));
+    }
     let options = text_options();
     // The version first, because the contents of a newer one may not be readable.
     let header: Header = options.from_str(text).map_err(refuse)?;

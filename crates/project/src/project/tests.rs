@@ -155,12 +155,17 @@ fn shading_by_two_highlights_is_read_by_its_old_name_and_written_by_its_new_one(
 }
 
 #[test]
-fn nonsense_is_refused_with_a_line() {
-    for text in
-        ["", "hello", "(version: 1, motion: (speed: fast))", "[1, 2", "(version: 1", "{\"version\": 1"]
-    {
+fn nonsense_is_refused_with_its_beginning_or_a_line() {
+    for (text, says) in [
+        ("", "p: is empty; must be a Lovelock project"),
+        ("hello", "p: begins with “hello”; must be a Lovelock project"),
+        ("[1, 2", "p: begins with “[1, 2”; must be a Lovelock project"),
+        ("{\"version\": 1", "p: begins with “{\"version\": 1”; must be a Lovelock project"),
+        ("(version: 1, motion: (speed: fast))", "line"),
+        ("(version: 1", "line"),
+    ] {
         let error = parse_project(Path::new("p"), text).expect_err(text);
-        assert!(error.to_string().contains("line"), "{error}");
+        assert!(error.to_string().contains(says), "{error}");
     }
     let deep = format!("(version: 1, x: {}{})", "[".repeat(100_000), "]".repeat(100_000));
     parse_project(Path::new("p"), &deep).expect_err("too deep");

@@ -50,7 +50,19 @@ fn a_project_is_a_style_and_old_ones_are_migrated() {
 fn bad_files_are_refused_with_a_sentence() {
     let refused = |text: &str| Style::parse(Path::new("s"), text).expect_err("refused").to_string();
     assert!(refused("(version: 99)").contains("newer"), "{}", refused("(version: 99)"));
-    for text in ["", "(version: 3, hair: (", "(version: 3, name: 4)", "\u{0}\u{1}", &"(".repeat(100_000)] {
+    for (text, says) in [
+        ("", "s: is empty; must be a Lovelock style"),
+        (" \n", "s: is empty; must be a Lovelock style"),
+        ("\u{0}\u{1}", "s: begins with a control character; must be a Lovelock style"),
+        ("hello\nthere", "s: begins with “hello”; must be a Lovelock style"),
+        (
+            "{ \"a\": \"a long text in JSON\" }",
+            "s: begins with “{ \"a\": \"a long text”; must be a Lovelock style",
+        ),
+    ] {
+        assert_eq!(refused(text), says);
+    }
+    for text in ["(version: 3, hair: (", "(version: 3, name: 4)", &"(".repeat(100_000)] {
         let message = refused(text);
         assert!(message.starts_with("s: line ") && message.ends_with("must be a style"), "{message}");
     }

@@ -253,6 +253,14 @@ pub(crate) fn is_left(film: &Path) -> bool {
     partial_path(film).exists() || has_older(film)
 }
 
+/// Whether an interrupted recording to `film` left images that play. Changes nothing.
+pub(crate) fn plays(film: &Path) -> bool {
+    [Parts::written(film), Parts::aside(film)].iter().any(|parts| {
+        let tables = File::open(&parts.partial).and_then(|file| parts.playable(&file));
+        tables.is_ok_and(|tables| tables.is_some())
+    })
+}
+
 /// Whether something is set aside that was left of `film` before it was recorded again.
 pub(crate) fn has_older(film: &Path) -> bool {
     Parts::aside(film).partial.exists()

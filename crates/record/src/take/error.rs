@@ -51,14 +51,12 @@ pub enum TakeError {
         kept: u64,
     },
     /// The file is not a take.
-    #[error("{}: is not a take: found {found}; must be {wanted}", path.display())]
+    #[error("{}: {why}", path.display())]
     NotATake {
         /// The file.
         path: PathBuf,
-        /// The first bytes of the file.
-        found: String,
-        /// The first bytes of a take.
-        wanted: String,
+        /// Why it is none.
+        why: String,
     },
     /// The take was written by a newer version of this program.
     #[error(

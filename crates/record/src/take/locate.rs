@@ -13,7 +13,7 @@ use super::source::Source;
 /// scan.
 pub(super) fn locate(source: &mut dyn Source, length: u64) -> Result<Map, MapError> {
     if length == 0 {
-        return Err(MapError::NotATake { found: "an empty file".to_owned() });
+        return Err(MapError::NotATake { why: "is empty; must be a take".to_owned() });
     }
     if let Err(HeaderError::Newer(version)) = header_at(source, 0, length)? {
         return Err(MapError::Newer(version));

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use super::chunk::{ChunkHeader, Kind, MAGIC};
+use super::chunk::{ChunkHeader, Kind};
 use super::index::Entry;
 use super::{MAX_CHUNK_FRAMES, TAKE_VERSION, TakeError, TakeHeader};
 
@@ -27,7 +27,7 @@ pub(super) struct Map {
 #[derive(Debug)]
 pub(super) enum MapError {
     Io(io::Error),
-    NotATake { found: String },
+    NotATake { why: String },
     Newer(u32),
     Malformed { offset: u64, found: String, wanted: String },
 }
@@ -38,9 +38,7 @@ impl MapError {
         let path = path.to_owned();
         match self {
             Self::Io(source) => TakeError::Io { path, action: "read".to_owned(), source },
-            Self::NotATake { found } => {
-                TakeError::NotATake { path, found, wanted: MAGIC.escape_ascii().to_string() }
-            }
+            Self::NotATake { why } => TakeError::NotATake { path, why },
             Self::Newer(found) => TakeError::Newer { path, found, newest: TAKE_VERSION },
             Self::Malformed { offset, found, wanted } => TakeError::Malformed { path, offset, found, wanted },
         }

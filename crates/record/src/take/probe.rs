@@ -59,7 +59,7 @@ pub(super) fn no_head(source: &mut dyn Source, length: u64) -> io::Result<MapErr
         let found = "a damaged or incomplete header and no intact copy of it".to_owned();
         return Ok(MapError::Malformed { offset: 0, found, wanted: "the header of a take".to_owned() });
     }
-    Ok(MapError::NotATake { found: start.escape_ascii().to_string() })
+    Ok(MapError::NotATake { why: "does not begin like a take".to_owned() })
 }
 
 /// The trailer at the end of the file.

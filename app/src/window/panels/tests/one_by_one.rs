@@ -255,7 +255,7 @@ fn shadow_shows_the_settings_of_its_method() {
 fn lights_are_added_and_removed() {
     let mut harness = panel("Light", Project::default());
     let few = harness.state().state.project.lights.len();
-    while let Some(add) = harness.query_by_label("+") {
+    while let Some(add) = harness.query_by_label("Add a light") {
         add.click();
         harness.run();
     }
@@ -268,7 +268,7 @@ fn lights_are_added_and_removed() {
         assert_eq!(harness.state().state.project.lights.len(), left);
     }
     assert!(harness.query_by_label_contains("No light").is_some());
-    harness.get_by_label("+").click();
+    harness.get_by_label("Add a light").click();
     harness.run();
     assert_eq!(harness.state().state.project.lights.len(), 1);
 }
