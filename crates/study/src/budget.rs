@@ -213,7 +213,8 @@ mod tests {
         accurate.reference.change = 0.000_05;
         assert_eq!(beaten(&accurate), deep);
         let mut faster = close.clone();
-        faster.methods[1].times[0].high = 122.0;
+        faster.methods[0].times[0].low = 130.0;
+        faster.methods[1].times[0].high = 129.0;
         assert_eq!(beaten(&faster), deep);
         // Of two times, the percentiles are those times.
         faster.methods[0].times[1].count = 2;
