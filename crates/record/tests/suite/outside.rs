@@ -1,6 +1,6 @@
 //! Films checked by other programs, if they are installed, and against a limit of the operating system.
 
-use lovelock_record::{FilmQuality, FilmSettings, FilmWriter};
+use lovelock_record::{FilmQuality, FilmSettings, FilmWriter, keep_unfinished};
 use std::path::Path;
 use std::process::Command;
 
@@ -102,7 +102,7 @@ fn ffmpeg_decodes_the_colours_that_went_in() {
 /// The operating system limits the size of the file (`ulimit -f`) in a second process of this test.
 #[cfg(unix)]
 #[test]
-fn a_limit_of_the_system_stops_the_film_and_leaves_nothing() {
+fn a_limit_of_the_system_stops_the_film_and_leaves_what_plays() {
     const FOLDER: &str = "LOVELOCK_TEST_LIMITED_FOLDER";
     if let Some(folder) = std::env::var_os(FOLDER) {
         let path = Path::new(&folder).join("film.mp4");
@@ -113,7 +113,7 @@ fn a_limit_of_the_system_stops_the_film_and_leaves_nothing() {
     }
     let folder = tempfile::tempdir().unwrap();
     let this = std::env::current_exe().unwrap();
-    let name = "outside::a_limit_of_the_system_stops_the_film_and_leaves_nothing";
+    let name = "outside::a_limit_of_the_system_stops_the_film_and_leaves_what_plays";
     // If the signal is ignored, `write` returns an error at the limit.
     let script = format!("trap '' XFSZ; ulimit -f 64 && exec \"$0\" --exact {name} --nocapture");
     let output = Command::new("bash").arg("-c").arg(script).arg(this).env(FOLDER, folder.path()).output();
@@ -125,5 +125,9 @@ fn a_limit_of_the_system_stops_the_film_and_leaves_nothing() {
     assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
     assert!(text.contains("ended by: ") && text.contains("film.mp4: could not write frame"), "{text}");
     assert!(text.contains("File too large"), "{text}");
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    let film = folder.path().join("film.mp4");
+    assert!(!film.exists(), "it is not complete");
+    let kept = keep_unfinished(&film).unwrap().expect("what plays");
+    assert!(kept.frames >= 16 && film.exists(), "{kept:?}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
 }
