@@ -45,7 +45,7 @@ impl StrokeFilm {
         let settings = FilmSettings { width, height, fps, quality: recording.quality };
         settings.check().map_err(refused)?;
         let renderer = open_renderer(project.picture.backend, None)?;
-        let writer = FilmWriter::create(out, settings).map_err(refused)?;
+        let writer = FilmWriter::create(out, settings).map_err(refused)?.leaving_nothing();
         Ok(Self {
             renderer,
             writer,

@@ -281,6 +281,15 @@ impl PictureSink {
     /// Cancels the recording. The file of a film or a preview is removed; complete frames of a sequence stay.
     pub fn cancel(self) {}
 
+    /// A sink that leaves nothing of a film whose recording fails: see [`FilmWriter::leaving_nothing`].
+    #[must_use]
+    pub fn leaving_nothing(self) -> Self {
+        match self {
+            Self::Film(writer) => Self::Film(writer.leaving_nothing()),
+            other => other,
+        }
+    }
+
     /// Ends a recording that cannot go on. What plays of a film is left ([`FilmWriter::leave`]), and complete frames of a sequence stay.
     pub fn leave(self) {
         if let Self::Film(writer) = self {

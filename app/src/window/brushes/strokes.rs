@@ -97,7 +97,9 @@ impl Window {
         let (edits, before) = (left.clone(), left.clone());
         let gesture = self.document.gesture();
         let added = if is_new { Some(gesture) } else { added };
-        strokes.adds = is_new.then(|| label_of(tool));
+        if is_new {
+            strokes.adds = Some(label_of(tool));
+        }
         if strokes.recorded.len() < StrokeFile::MAX_STROKES && strokes.samples < MAX_SAMPLES {
             let settings = settings.clone();
             strokes.recorded.push(RecordedStroke { tool, inverted, settings, samples: Vec::new() });

@@ -362,7 +362,14 @@ impl Writer {
                 .broken
                 .as_ref()
                 .is_some_and(|broken| broken.path == place && is_still(&broken.file, &broken.path));
-            let opened = match self.journals.set_aside_dead(&place) {
+            let aside = self.journals.set_aside_dead(&place);
+            // One that can only be read stays, and so does one of a newer version: no program has the place.
+            let stays = match &aside {
+                Ok(Aside::Newer) => true,
+                Ok(Aside::Moved | Aside::Nothing) => place.exists(),
+                Ok(Aside::Busy(_)) | Err(_) => false,
+            };
+            let opened = match aside {
                 Ok(Aside::Busy(_)) if is_own => self.begin(place.clone(), marked, replace),
                 Ok(Aside::Busy(owner)) => {
                     // Not again when it tries again after a failure.
@@ -398,7 +405,9 @@ impl Writer {
                     is_busy = true;
                     places = second.clone().into_iter().filter(|second| *second != place).collect();
                     // A program that takes the place at this very moment is met at the next look.
-                    self.met.get_or_insert((place, Owner::default()));
+                    if !stays {
+                        self.met.get_or_insert((place, Owner::default()));
+                    }
                 }
                 Err(error) => {
                     failed.get_or_insert((folder_of(&place), error));

@@ -229,6 +229,16 @@ impl FilmWriter {
         self.join()
     }
 
+    /// A writer that leaves nothing if the recording fails, for films that nobody would be asked about.
+    #[must_use]
+    pub fn leaving_nothing(self) -> Self {
+        if let Some(jobs) = &self.jobs {
+            // This fails only if the worker has stopped; the next `push` then returns its error.
+            let _ = jobs.send(Job::LeaveNothing);
+        }
+        self
+    }
+
     /// Cancels the recording. This is the same as dropping the writer.
     pub fn cancel(self) {}
 

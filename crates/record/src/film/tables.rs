@@ -105,7 +105,7 @@ fn claim_left(film: &Path) -> io::Result<Option<File>> {
 }
 
 /// What an interrupted recording left, set aside while the same film is recorded again: a recording that is cancelled or fails must
-/// not cost what could be kept. Dropped, it is put back.
+/// not cost what could be kept. Dropped, it is put back, unless that recording left something itself.
 pub(super) struct Before {
     film: PathBuf,
     /// Locked, so that no other program puts it back meanwhile.
@@ -191,7 +191,7 @@ impl TablesFile {
 
 impl Drop for TablesFile {
     fn drop(&mut self) {
-        // Without its ending, the name is that of the images.
+        // The name without its ending is that of the images.
         if !self.path.with_extension("").exists() {
             let _ = fs::remove_file(&self.path);
         }
@@ -255,10 +255,11 @@ pub(crate) fn is_left(film: &Path) -> bool {
 
 /// Whether an interrupted recording to `film` left images that play. Changes nothing.
 pub(crate) fn plays(film: &Path) -> bool {
-    [Parts::written(film), Parts::aside(film)].iter().any(|parts| {
-        let tables = File::open(&parts.partial).and_then(|file| parts.playable(&file));
-        tables.is_ok_and(|tables| tables.is_some())
-    })
+    let written = Parts::written(film);
+    // An older one is kept only where there is no newer one.
+    let parts = if written.partial.exists() { written } else { Parts::aside(film) };
+    let tables = File::open(&parts.partial).and_then(|file| parts.playable(&file));
+    tables.is_ok_and(|tables| tables.is_some())
 }
 
 /// Whether something is set aside that was left of `film` before it was recorded again.

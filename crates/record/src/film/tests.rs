@@ -170,10 +170,13 @@ fn a_cancel_leaves_the_old_film_alone() {
 
 #[test]
 fn a_recording_that_cannot_go_on_leaves_what_plays() {
-    for panics in [false, true] {
+    for (panics, leaves) in [(false, true), (true, true), (false, false), (true, false)] {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.mp4");
         let mut film = FilmWriter::create(&path, SMALL).unwrap();
+        if !leaves {
+            film = film.leaving_nothing();
+        }
         (0..30).for_each(|frame| film.push(&picture(SMALL, frame)).unwrap());
         if panics {
             let ended = catch_unwind(AssertUnwindSafe(|| {
@@ -184,8 +187,13 @@ fn a_recording_that_cannot_go_on_leaves_what_plays() {
         } else {
             film.leave();
         }
-        assert_eq!(keep_unfinished(&path).unwrap().map(|kept| kept.frames), Some(16), "{panics}");
-        assert_eq!(decode(&path).len(), 16);
+        let kept = keep_unfinished(&path).unwrap().map(|kept| kept.frames);
+        assert_eq!(kept, leaves.then_some(16), "{panics}");
+        if leaves {
+            assert_eq!(decode(&path).len(), 16);
+        } else {
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        }
     }
 }
 

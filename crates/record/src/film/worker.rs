@@ -18,6 +18,8 @@ pub(super) enum Job {
     Sound(Box<dyn SoundSource>),
     /// The next image.
     Frame(Vec<u8>),
+    /// From now on nothing is left of a recording that fails.
+    LeaveNothing,
     /// There are no more frames.
     Finish,
     /// The recording failed elsewhere. If the channel closes without this message or the one before, it has been cancelled.
@@ -33,7 +35,9 @@ pub(super) struct Film {
     tables: TablesFile,
     sound: Option<OpusEncoding>,
     frames: u64,
-    /// Dropped last, when the files of this recording are gone.
+    /// Whether what plays stays if the recording fails.
+    leaves: bool,
+    /// Dropped last, after the files of this recording.
     before: Before,
 }
 
@@ -54,7 +58,8 @@ impl Film {
         let before = Before::set_aside(path)?;
         let writer = Mp4Writer::new(PartialFile::create(path, opener)?, track)?;
         let tables = TablesFile::new(path);
-        Ok(Self { path: path.to_owned(), settings, rate, writer, tables, sound: None, frames: 0, before })
+        let path = path.to_owned();
+        Ok(Self { path, settings, rate, writer, tables, sound: None, frames: 0, leaves: true, before })
     }
 
     /// Works until [`Job::Finish`] (returns the report), until [`Job::Leave`] or the channel closes (returns `None`), or until an
@@ -73,6 +78,10 @@ impl Film {
                 Job::Frame(rgba) => {
                     self.add(&mut encoder, &rgba)?;
                     give_back(done, rgba);
+                }
+                Job::LeaveNothing => {
+                    self.leaves = false;
+                    self.writer.medium().set_stays(false);
                 }
                 Job::Finish => return self.finish(&encoder).map(Some),
                 Job::Leave => return Ok(None),
@@ -99,7 +108,7 @@ impl Film {
             let tables = self.writer.tables_so_far(encoder.config());
             // The film itself does not need them. With them, a full disk costs only the images behind them.
             if tables.and_then(|tables| self.tables.write(&tables)).is_ok() {
-                self.writer.medium().set_stays(true);
+                self.writer.medium().set_stays(self.leaves);
             }
         }
         Ok(())

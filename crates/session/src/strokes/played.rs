@@ -72,7 +72,7 @@ pub const STROKES_EXTENSION: &str = StrokeFile::EXTENSION;
 /// # Errors
 /// The file cannot be read, or holds something else.
 pub fn read_strokes(path: &Path) -> Result<StrokeFile, ProjectError> {
-    let text = read_text(path, "file of recorded strokes", StrokeFile::LONGEST as u64)?;
+    let text = read_text(path, "stroke recording", StrokeFile::LONGEST as u64)?;
     let wrong = |error| ProjectError::input(path, format!("{}: {error}", path.display()));
     StrokeFile::from_text(&text).map_err(wrong)
 }

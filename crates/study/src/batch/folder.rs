@@ -96,7 +96,10 @@ impl Folder {
     /// As [`Folder::picture`].
     pub(super) fn film(&self, name: &str, settings: SinkSettings) -> Result<PictureSink, ProjectError> {
         let path = self.path.join(name);
-        PictureSink::for_path(&path, settings).map_err(|error| ProjectError::output(&path, error))
+        let film =
+            PictureSink::for_path(&path, settings).map_err(|error| ProjectError::output(&path, error))?;
+        // The comparison is made again as a whole.
+        Ok(film.leaving_nothing())
     }
 
     /// The whole path of a file of the report.

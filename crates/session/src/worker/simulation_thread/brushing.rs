@@ -67,8 +67,8 @@ impl Brushing {
     /// does not if the scene lacks what the strokes did, and none that has it is still to come.
     pub(super) fn keep(&mut self, engine: &mut Engine, frame: &GuideFrame) -> bool {
         let stack = &engine.scene().source.stack;
-        if let Some(OpenStroke { start, stroke }) = &self.open {
-            if let Some(stroke) = stroke.as_ref().filter(|of| stack.hand(start.layer) != Some(&of.edits())) {
+        if let Some(OpenStroke { start, stroke: Some(stroke) }) = &self.open {
+            if stack.hand(start.layer) != Some(&stroke.edits()) {
                 stroke.hold(engine, frame);
             }
             return true;
@@ -242,8 +242,11 @@ impl SimulationThread {
                     self.engine.as_ref().is_some_and(|engine| has_all(&engine.scene().source.stack));
                 let is_known = self.project.as_ref().is_some_and(|project| has_all(&project.hair.stack));
                 let since = Stopwatch::start();
-                self.brushing.ended =
-                    (!is_there).then_some(EndedStroke { layer, stroke, edits, is_known, since });
+                if is_there {
+                    self.brushing.ended.take_if(|ended| ended.layer == layer);
+                } else {
+                    self.brushing.ended = Some(EndedStroke { layer, stroke, edits, is_known, since });
+                }
             }
             self.record_change();
         }
