@@ -38,7 +38,7 @@ pub(super) fn run(deb: &Path) -> anyhow::Result<()> {
     bare.run(&format!("{install} >/tmp/install.log || {{ tail -n 40 /tmp/install.log; false; }}"))?;
     for what in [
         "lovelock --version",
-        "test -s /usr/share/man/man1/lovelock-record.1.gz",
+        "test -s /usr/share/man/man1/lovelock-record.1",
         "test -s /usr/share/applications/lovelock.desktop",
         "timeout 600 xvfb-run -a -s '-screen 0 1440x900x24' lovelock --screenshot /tmp/window.png --after 3",
         "timeout 600 lovelock record -o /tmp/film.mp4 --frames 0..10 --size 320x180",
