@@ -405,6 +405,6 @@ fn moments_that_no_distribution_has_are_counted_on_the_device() {
         println!("{count} {kind:?}, {bits} bits: {usual:?} with the bias, {unbiased:?} without");
         // Which of the singular systems count as solvable is a matter of rounding: 2 of 468 differ.
         assert!(usual == [0, 0] && unbiased[0] > 20 && unbiased[1] > 20, "{usual:?}, {unbiased:?}");
-        assert!(unbiased[0].abs_diff(unbiased[1]) <= (unbiased[1] / 50).max(3), "{unbiased:?}");
+        assert!(unbiased[0].abs_diff(unbiased[1]) <= unbiased[1] / 50, "{unbiased:?}");
     }
 }
