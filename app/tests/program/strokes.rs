@@ -44,6 +44,12 @@ fn strokes_are_written_into_a_project() {
     assert!(
         style("hair.lovelock", "missing.lovelockstrokes", "none.lovelock").refused(2).contains("missing")
     );
+    std::fs::write(dir.path().join("text.lovelockstrokes"), "hello").expect("a file");
+    let line = style("hair.lovelock", "text.lovelockstrokes", "none.lovelock").refused(2).to_owned();
+    assert!(
+        line.contains("text.lovelockstrokes: begins with “hello”; must be a Lovelock stroke recording"),
+        "{line}"
+    );
     assert!(!dir.path().join("none.lovelock").exists());
     // They are no project: their text would be one without any settings.
     let recorded = run(dir.path(), ["record", "a.lovelockstrokes", "-o", "none.mp4"]);

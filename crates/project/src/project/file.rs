@@ -111,7 +111,22 @@ pub(crate) fn text_options() -> ron::Options {
         .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
 }
 
-/// What a text begins with that no project or style begins with; `None` if it may be one of them.
+/// Refuses a text that begins unlike everything this program writes, such as a project; `what` it should be. Parsers would say what they
+/// expected instead.
+///
+/// # Errors
+/// How the text begins, and what it must be.
+pub fn refuse_foreign(path: &Path, text: &str, what: &str) -> Result<(), ProjectError> {
+    match foreign_begin(text) {
+        None => Ok(()),
+        Some(found) => {
+            let message = format!("{}: {found}; must be a Lovelock {what}", path.display());
+            Err(ProjectError::input(path, message))
+        }
+    }
+}
+
+/// What a text begins with that no project, style or stroke recording begins with; `None` if it may be one of them.
 fn foreign_begin(text: &str) -> Option<String> {
     let text = text.trim_start_matches('\u{feff}').trim();
     // The whole, a comment or an extension of RON.
@@ -144,9 +159,7 @@ pub(crate) fn parse_text(
             format!("{name}: line {}: {}; must be a {what}", error.span.start, error.code),
         )
     };
-    if let Some(found) = foreign_begin(text) {
-        return Err(ProjectError::input(path, format!("{name}: {found}; must be a Lovelock {what}")));
-    }
+    refuse_foreign(path, text, what)?;
     let options = text_options();
     // The version first, because the contents of a newer one may not be readable.
     let header: Header = options.from_str(text).map_err(refuse)?;

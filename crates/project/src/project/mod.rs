@@ -26,7 +26,7 @@ pub use contender::{Contender, backend_label};
 pub(crate) use file::{LARGEST_BYTES, parse_text, project_in_memory, text_in_memory, text_options};
 pub use file::{
     PROJECT_EXTENSION, load_project, load_project_with, parse_project, project_of_text, read_text,
-    save_project, text_of_project,
+    refuse_foreign, save_project, text_of_project,
 };
 pub use lens::{FocusOn, LensSettings};
 pub use sections::{

@@ -9,7 +9,7 @@ use lovelock_motion::{Pose, pose_at};
 use lovelock_project::Project;
 use lovelock_project::error::{Problem, ProjectError};
 use lovelock_project::files::Access;
-use lovelock_project::project::read_text;
+use lovelock_project::project::{read_text, refuse_foreign};
 use lovelock_style::hand::HandEdits;
 use lovelock_style::operations::Hand;
 use lovelock_style::{Layer, StyleStack};
@@ -72,7 +72,9 @@ pub const STROKES_EXTENSION: &str = StrokeFile::EXTENSION;
 /// # Errors
 /// The file cannot be read, or holds something else.
 pub fn read_strokes(path: &Path) -> Result<StrokeFile, ProjectError> {
-    let text = read_text(path, "stroke recording", StrokeFile::LONGEST as u64)?;
+    let what = "stroke recording";
+    let text = read_text(path, what, StrokeFile::LONGEST as u64)?;
+    refuse_foreign(path, &text, what)?;
     let wrong = |error| ProjectError::input(path, format!("{}: {error}", path.display()));
     StrokeFile::from_text(&text).map_err(wrong)
 }
