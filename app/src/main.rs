@@ -11,6 +11,11 @@ use tracing_subscriber::filter::Targets;
 use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
 
+/// Gives freed memory back. The allocator of the system keeps it in one arena for each of many threads, and a window that is used for hours
+/// would grow.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() -> ExitCode {
     without_display_messages();
     // Messages of graphics drivers while adapters are probed, and of readers of sound while a format is guessed, are not errors of this program.
