@@ -9,6 +9,7 @@ use lovelock_record as recording;
 use lovelock_session::scene::frame_points;
 
 use super::command::Command;
+use super::control::titled_dialog;
 use super::files::Pending;
 use super::opening::Aim;
 use super::page::Page;
@@ -376,7 +377,7 @@ impl Window {
     /// Asks for confirmation before unsaved changes are lost.
     pub(super) fn confirm_loss(&mut self, ctx: &egui::Context) {
         let Some(pending) = self.files.pending.clone() else { return };
-        let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
+        let modal = titled_dialog("unsaved", "Unsaved changes").show(ctx, |ui| {
             ui.heading("The project has unsaved changes.");
             ui.horizontal(|ui| {
                 let save = ui.button("Save");

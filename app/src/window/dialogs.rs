@@ -7,6 +7,7 @@ use lovelock_project::styles::STYLE_EXTENSION;
 
 use super::actions::Used;
 use super::command::Command;
+use super::control::titled_dialog;
 use super::page::Page;
 use super::path_dialog::{Answer, PathDialog};
 use super::purpose::Purpose;
@@ -74,7 +75,7 @@ impl Window {
         }
         if self.help.keys_shown {
             let mut change = false;
-            let modal = egui::Modal::new(egui::Id::unique("keys")).show(ctx, |ui| {
+            let modal = titled_dialog("keys", "Keys").show(ctx, |ui| {
                 ui.horizontal(|ui| {
                     ui.heading("Keys");
                     if ui.small_button("Change…").clicked() {

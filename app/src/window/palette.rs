@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use super::command::{COMMANDS, Command, CommandInfo};
-use crate::window::control::HoverTooltip;
-use egui::{Layout, Modal, RichText, ScrollArea};
+use crate::window::control::{HoverTooltip, titled_dialog};
+use egui::{Layout, RichText, ScrollArea};
 use lovelock_base::settings::{Info, Settings as _};
 use lovelock_brush::BrushSettings;
 use lovelock_project::project::settings_of;
@@ -143,7 +143,7 @@ impl Palette {
         }
         let mut result = None;
         let keymap = Keymap::of(ctx);
-        let response = Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
+        let response = titled_dialog("palette", "Command palette").show(ctx, |ui| {
             ui.set_width(LIST.x);
             let name = "Find a command or a setting";
             let (field, picked) = self.picker.field(ui, name, f32::INFINITY, false);

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use egui::{Context, Id, Modal, RichText, Ui};
+use egui::{Context, RichText, Ui};
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::words::counted;
 use lovelock_project::Project;
@@ -12,7 +12,7 @@ use lovelock_project::unfinished::{Interrupted, Job, Recordings, Running};
 use lovelock_record::{UnfinishedKind, can_be_kept, discard_unfinished, keep_unfinished};
 
 use super::ago::ago;
-use crate::window::control::HoverTooltip;
+use crate::window::control::{HoverTooltip, titled_dialog};
 use crate::window::recorder::State;
 use crate::window::{Window, theme};
 
@@ -114,7 +114,7 @@ impl Window {
             return;
         }
         let busy = self.media.recorder.is_running();
-        let modal = Modal::new(Id::unique("interrupted recordings")).show(ctx, |ui| {
+        let modal = titled_dialog("interrupted recordings", "Interrupted recordings").show(ctx, |ui| {
             ui.set_width(520.0);
             match works.asked.and_then(|k| Some((k, works.list.get(k)?))) {
                 Some((k, work)) => ask(ui, k, work),
