@@ -11,7 +11,7 @@ use crate::film::tables;
 use crate::partial::{free_name, partial_path};
 use crate::sequence;
 use crate::take::{cut_takes, part_path};
-use crate::{OutputKind, RecordError, TAKE_EXTENSION, TakeReader};
+use crate::{OutputKind, RecordError, TAKE_EXTENSION, TakeError, TakeReader};
 
 /// What was recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,12 +97,28 @@ pub fn unfinished_outs(out: &Path) -> Vec<PathBuf> {
 }
 
 /// Whether enough seems to be there for [`keep_unfinished`]. Changes nothing.
-pub fn can_be_kept(out: &Path) -> bool {
+///
+/// # Errors
+/// If what is there cannot be read.
+pub fn can_be_kept(out: &Path) -> Result<bool, RecordError> {
     match UnfinishedKind::of(out) {
-        Some(UnfinishedKind::Film) => tables::plays(out),
-        Some(UnfinishedKind::Sequence) => true,
-        Some(UnfinishedKind::Take) => TakeReader::open(&part_path(out)).is_ok_and(|take| take.frames() > 0),
-        None => false,
+        Some(UnfinishedKind::Film) => {
+            tables::plays(out).map_err(|error| RecordError::io(out, "read the unfinished film", error))
+        }
+        Some(UnfinishedKind::Sequence) => Ok(true),
+        Some(UnfinishedKind::Take) => Ok(frames_of_take(&part_path(out))? > 0),
+        None => Ok(false),
+    }
+}
+
+/// Number of frames of an unfinished take; 0 where its recording had ended before its first second was written.
+fn frames_of_take(part: &Path) -> Result<u64, RecordError> {
+    match TakeReader::open(part) {
+        Ok(take) => Ok(take.frames()),
+        Err(TakeError::NotATake { .. } | TakeError::Empty { .. }) => Ok(0),
+        Err(TakeError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => Ok(0),
+        Err(TakeError::Io { path, action, source }) => Err(RecordError::Io { path, action, source }),
+        Err(error) => Err(RecordError::request(error.to_string())),
     }
 }
 
@@ -128,8 +144,9 @@ pub fn keep_unfinished(out: &Path) -> Result<Option<Kept>, RecordError> {
                 return Ok(None);
             }
             // Read before it is locked: some systems let nobody else read a locked file. A take that is cut plays like any other.
-            let frames = TakeReader::open(&part).map_or(0, |take| take.frames());
+            let frames = frames_of_take(&part);
             let _lock = claim(&part).map_err(failed)?;
+            let frames = frames?;
             if frames == 0 {
                 return Ok(None);
             }
@@ -245,7 +262,7 @@ mod tests {
 
         let name = left.path().join("dance ü.mp4");
         fs::write(&name, b"an older film").unwrap();
-        assert!(can_be_kept(&name));
+        assert!(can_be_kept(&name).unwrap());
         let kept = keep_unfinished(&name).unwrap().expect("a film");
         assert_eq!((kept.frames, kept.path.as_path()), (16, left.path().join("dance ü-1.mp4").as_path()));
         assert_eq!(decoded(&kept.path), whole[..16]);
@@ -275,7 +292,7 @@ mod tests {
             fs::rename(path, folder.path().join(aside)).unwrap();
         }
         assert!(is_unfinished(&film));
-        assert!(!can_be_kept(&film));
+        assert!(!can_be_kept(&film).unwrap());
         assert_eq!(keep_unfinished(&film).unwrap(), None, "nothing that plays");
         assert!(files.iter().all(|path| path.exists()));
         // Control: one that ends well replaces it.
@@ -411,9 +428,13 @@ mod tests {
         drop(recording);
         fs::write(&part, b"cut").unwrap();
         assert!(is_unfinished(&take));
+        assert!(!can_be_kept(&take).unwrap());
         assert_eq!(keep_unfinished(&take).unwrap(), None);
         discard_unfinished(&take).unwrap();
         assert!(!part.exists() && !is_unfinished(&take));
+        // What cannot be read is not taken for a short one.
+        fs::create_dir(&part).unwrap();
+        assert!(can_be_kept(&take).unwrap_err().to_string().contains("dance.take.part"));
     }
 
     #[test]
