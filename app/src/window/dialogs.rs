@@ -77,18 +77,18 @@ impl Window {
             },
         }
         if self.help.keys_shown {
-            let mut change = false;
+            let (mut change, mut close) = (false, false);
             let modal = titled_dialog("keys", "Keys").show(ctx, |ui| {
+                // Above the list, which takes all the height there is.
                 ui.horizontal(|ui| {
                     ui.heading("Keys");
-                    if ui.small_button("Change…").clicked() {
-                        change = true;
-                    }
+                    change = ui.small_button("Change…").clicked();
+                    close = ui.small_button("Close").clicked();
                 });
                 let most = ctx.content_rect().height() * 0.85;
                 ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, keys::list);
             });
-            self.help.keys_shown = !modal.should_close() && !change;
+            self.help.keys_shown = !(modal.should_close() || change || close);
             if change {
                 self.preferences.toggle();
             }
