@@ -189,8 +189,8 @@ impl Window {
     }
 }
 
-/// The folder that is suggested for recordings: `out` beside the file of the project, otherwise that of the `last` recording, otherwise that of
-/// the user's `videos`. The folder in which the program was started may be any.
+/// The folder that is suggested for recordings: `out` beside the file of the project, otherwise that of the `last` recording, otherwise that
+/// of the user's `videos`. The folder in which the program was started may be any.
 fn recordings_folder(
     project: Option<&Path>,
     last: Option<&Path>,

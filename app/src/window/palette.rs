@@ -62,7 +62,7 @@ impl Found {
     }
 }
 
-/// Where the controls of settings are whose paths begin so; the first that fits. The settings of other paths are spread over several panels.
+/// Where the controls of settings are whose paths begin so, the first that fits. Settings of other paths are spread over several panels.
 const PLACES: [(&str, &str); 25] = [
     ("brush.", "Brushes"),
     ("body.scalp.", "Scalp"),

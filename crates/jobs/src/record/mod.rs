@@ -19,7 +19,7 @@ pub use report::{RecordReport, StageMedians};
 pub use request::RecordRequest;
 pub use take::{TakeRecordReport, is_take, record_take};
 
-/// The folder in which the user keeps videos, or the home folder where the system names none that is there. `None` for a user without a home.
+/// The folder in which the user keeps videos, otherwise the home folder. `None` for a user without a home.
 pub fn videos_folder() -> Option<std::path::PathBuf> {
     dirs::video_dir().filter(|folder| folder.is_dir()).or_else(dirs::home_dir)
 }
