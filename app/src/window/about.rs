@@ -1,11 +1,11 @@
 //! What the program is, and what the manual says about a control that the user asks about.
 
-use egui::{Context, Grid, Id, Modal, RichText};
+use egui::{Context, Grid, RichText};
 use lovelock_base::settings::Info;
 use lovelock_project::project::changed_settings;
 
 use super::command::COMMANDS;
-use super::control::HoverTooltip;
+use super::control::{HoverTooltip, titled_dialog};
 use super::manual::what::Asked;
 use super::manual::{place_of_control, place_of_setting};
 use super::notices::Kind;
@@ -18,7 +18,7 @@ impl Window {
             return;
         }
         let rows = self.versions();
-        let modal = Modal::new(Id::unique("about")).show(ctx, |ui| {
+        let modal = titled_dialog("about", "About Lovelock").show(ctx, |ui| {
             ui.set_width(380.0);
             ui.heading("Lovelock");
             ui.label(env!("CARGO_PKG_DESCRIPTION"));

@@ -9,6 +9,7 @@ use lovelock_record as recording;
 use lovelock_session::scene::frame_points;
 
 use super::command::Command;
+use super::control::titled_dialog;
 use super::files::Pending;
 use super::opening::Aim;
 use super::page::Page;
@@ -312,6 +313,7 @@ impl Window {
                     let has_panes = panes.is_some();
                     self.media.recorder.start(project.clone(), access, path, panes, resume, ctx);
                     self.note_recording(path, &project, has_panes);
+                    self.layout.recordings = path.parent().map(Path::to_owned);
                 }
             }
             Purpose::ExportStyle => self.export_style(path)?,
@@ -376,7 +378,7 @@ impl Window {
     /// Asks for confirmation before unsaved changes are lost.
     pub(super) fn confirm_loss(&mut self, ctx: &egui::Context) {
         let Some(pending) = self.files.pending.clone() else { return };
-        let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
+        let modal = titled_dialog("unsaved", "Unsaved changes").show(ctx, |ui| {
             ui.heading("The project has unsaved changes.");
             ui.horizontal(|ui| {
                 let save = ui.button("Save");

@@ -1,12 +1,16 @@
 //! The dialogs of the window, which are above everything else and take all keys until they are answered.
 
+use std::path::{Path, PathBuf};
+
 use egui::ScrollArea;
 use lovelock_base::words::counted;
+use lovelock_jobs::record::videos_folder;
 use lovelock_project::project::PROJECT_EXTENSION;
 use lovelock_project::styles::STYLE_EXTENSION;
 
 use super::actions::Used;
 use super::command::Command;
+use super::control::titled_dialog;
 use super::page::Page;
 use super::path_dialog::{Answer, PathDialog};
 use super::purpose::Purpose;
@@ -73,18 +77,18 @@ impl Window {
             },
         }
         if self.help.keys_shown {
-            let mut change = false;
-            let modal = egui::Modal::new(egui::Id::unique("keys")).show(ctx, |ui| {
+            let (mut change, mut close) = (false, false);
+            let modal = titled_dialog("keys", "Keys").show(ctx, |ui| {
+                // Above the list, which takes all the height there is.
                 ui.horizontal(|ui| {
                     ui.heading("Keys");
-                    if ui.small_button("Change…").clicked() {
-                        change = true;
-                    }
+                    change = ui.small_button("Change…").clicked();
+                    close = ui.small_button("Close").clicked();
                 });
                 let most = ctx.content_rect().height() * 0.85;
                 ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, keys::list);
             });
-            self.help.keys_shown = !modal.should_close() && !change;
+            self.help.keys_shown = !(modal.should_close() || change || close);
             if change {
                 self.preferences.toggle();
             }
@@ -104,8 +108,10 @@ impl Window {
         let folder = self
             .document
             .path()
-            .and_then(std::path::Path::parent)
-            .map_or_else(|| std::env::current_dir().unwrap_or_default(), std::path::Path::to_owned);
+            .and_then(Path::parent)
+            .map_or_else(|| std::env::current_dir().unwrap_or_default(), Path::to_owned);
+        let last = self.layout.recordings.as_deref();
+        let recordings = || recordings_folder(self.document.path(), last, videos_folder);
         let suggestion = match purpose {
             Purpose::Open
             | Purpose::Beside
@@ -115,15 +121,15 @@ impl Window {
             | Purpose::Backdrop
             | Purpose::Reference
             | Purpose::Sound => folder.join(""),
-            Purpose::SaveProject => self.document.path().map_or_else(
-                || folder.join("hair").with_extension(PROJECT_EXTENSION),
-                std::path::Path::to_owned,
-            ),
-            Purpose::Film if self.layout.page == Page::Compare => folder.join("out").join("comparison.mp4"),
-            Purpose::Film => folder.join("out").join("dance.mp4"),
-            Purpose::Sequence | Purpose::Resume => folder.join("out").join("frames"),
-            Purpose::Preview => folder.join("out").join("dance.apng"),
-            Purpose::Curves => folder.join("out").join("dance.usdc"),
+            Purpose::SaveProject => self
+                .document
+                .path()
+                .map_or_else(|| folder.join("hair").with_extension(PROJECT_EXTENSION), Path::to_owned),
+            Purpose::Film if self.layout.page == Page::Compare => recordings().join("comparison.mp4"),
+            Purpose::Film => recordings().join("dance.mp4"),
+            Purpose::Sequence | Purpose::Resume => recordings().join("frames"),
+            Purpose::Preview => recordings().join("dance.apng"),
+            Purpose::Curves => recordings().join("dance.usdc"),
             Purpose::Picture if self.layout.page == Page::Compare => folder.join("comparison.png"),
             Purpose::ExportStyle => {
                 let name = self.files.exported.as_ref().map_or("", |style| style.name.as_str());
@@ -135,7 +141,7 @@ impl Window {
         };
         let recent = self.layout.files.iter().chain(&self.layout.recent).cloned();
         let dialog = PathDialog::new(purpose, &suggestion)
-            .own(self.document.path().map(std::path::Path::to_owned))
+            .own(self.document.path().map(Path::to_owned))
             .recent(recent);
         self.files.dialog = Some(match purpose {
             Purpose::Film | Purpose::Sequence | Purpose::Preview | Purpose::Resume => {
@@ -180,5 +186,30 @@ impl Window {
             recording.fps,
             frames as f64 / recording.fps,
         )
+    }
+}
+
+/// The folder that is suggested for recordings: `out` beside the file of the project, otherwise that of the `last` recording, otherwise that
+/// of the user's `videos`. The folder in which the program was started may be any.
+fn recordings_folder(
+    project: Option<&Path>,
+    last: Option<&Path>,
+    videos: impl FnOnce() -> Option<PathBuf>,
+) -> PathBuf {
+    let beside = project.and_then(Path::parent).map(|folder| folder.join("out"));
+    beside.or_else(|| last.map(Path::to_owned)).or_else(videos).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn recordings_lie_beside_the_project_or_where_the_last_one_does() {
+        let (project, last) = (Path::new("/hair/red.lovelock"), Path::new("/films"));
+        let videos = || Some(PathBuf::from("/home/Videos"));
+        assert_eq!(recordings_folder(Some(project), Some(last), videos), Path::new("/hair/out"));
+        assert_eq!(recordings_folder(None, Some(last), videos), last);
+        assert_eq!(recordings_folder(None, None, videos), Path::new("/home/Videos"));
     }
 }

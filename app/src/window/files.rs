@@ -310,7 +310,7 @@ impl Window {
                 self.session.pick(path);
                 self.allow_granted(path);
                 let file = FileRef::new(path);
-                self.change("compare", |project| {
+                self.change("add pane", |project| {
                     let own = Contender::of(project);
                     if untouched {
                         project.compare.panes = vec![own.clone()];

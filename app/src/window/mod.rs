@@ -116,6 +116,8 @@ struct Layout {
     recent: Vec<PathBuf>,
     /// Other files that were opened, newest first.
     files: Vec<PathBuf>,
+    /// The folder in which the last film, sequence or export was recorded.
+    recordings: Option<PathBuf>,
     /// Rendered pixels per pixel of the screen; 0 is automatic.
     view_scale: f32,
     /// The rate that images keep while something moves if their size is automatic, images per second.
@@ -144,6 +146,7 @@ impl Default for Layout {
             panels_hidden: false,
             recent: Vec::new(),
             files: Vec::new(),
+            recordings: None,
             view_scale: 0.0,
             view_rate: resolution::DEFAULT_RATE,
             page: Page::default(),

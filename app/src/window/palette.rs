@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use super::command::{COMMANDS, Command, CommandInfo};
-use crate::window::control::HoverTooltip;
-use egui::{Layout, Modal, RichText, ScrollArea};
+use crate::window::control::{HoverTooltip, titled_dialog};
+use egui::{Layout, RichText, ScrollArea};
 use lovelock_base::settings::{Info, Settings as _};
 use lovelock_brush::BrushSettings;
 use lovelock_project::project::settings_of;
@@ -62,8 +62,8 @@ impl Found {
     }
 }
 
-/// Where the controls of settings are whose paths begin so. The settings of other paths are spread over several panels.
-const PLACES: [(&str, &str); 17] = [
+/// Where the controls of settings are whose paths begin so, the first that fits. Settings of other paths are spread over several panels.
+const PLACES: [(&str, &str); 25] = [
     ("brush.", "Brushes"),
     ("body.scalp.", "Scalp"),
     ("body.face.", "Face"),
@@ -81,6 +81,14 @@ const PLACES: [(&str, &str); 17] = [
     ("reference.", "Picture › Reference picture"),
     ("picture.clusters.", "Picture › Clusters"),
     ("picture.body_look.", "Body look"),
+    ("picture.map_view.", "Shadow › Map over the hair"),
+    ("picture.background", "Picture › Background"),
+    ("picture.ground", "Picture › Background"),
+    ("picture.strands", "Look › Strands"),
+    ("picture.strand_detail", "Look › Strands"),
+    ("picture.strand_number", "Look › Strands"),
+    ("picture.surroundings_turn", "Light"),
+    ("picture.", "Picture"),
 ];
 
 /// Where the control of the setting at a path is, if that is known.
@@ -143,7 +151,7 @@ impl Palette {
         }
         let mut result = None;
         let keymap = Keymap::of(ctx);
-        let response = Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
+        let response = titled_dialog("palette", "Command palette").show(ctx, |ui| {
             ui.set_width(LIST.x);
             let name = "Find a command or a setting";
             let (field, picked) = self.picker.field(ui, name, f32::INFINITY, false);
@@ -184,6 +192,7 @@ impl Palette {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::window::shelf::Panels;
 
     fn names(typed: &str) -> Vec<&'static str> {
         matches(typed, &Keymap::default(), |_| true).iter().map(Found::name).collect()
@@ -211,6 +220,18 @@ mod tests {
         assert_eq!(places, ["Brushes", "Hairstyle › Texture"]);
         for (begin, place) in PLACES {
             assert!(SETTINGS.iter().any(|(path, _)| path.starts_with(begin)), "{begin}: {place}");
+            let panel = place.split(" › ").next().unwrap_or_default();
+            assert!(Panels::usual().iter().flatten().any(|title| *title == panel), "{begin}: {place}");
+        }
+        for (path, place) in [
+            ("picture.exposure_stops", "Picture"),
+            ("picture.strand_opacity", "Picture"),
+            ("picture.strand_number", "Look › Strands"),
+            ("picture.background_top", "Picture › Background"),
+            ("picture.map_view.slice", "Shadow › Map over the hair"),
+        ] {
+            assert!(SETTINGS.iter().any(|(known, _)| known == path), "{path}");
+            assert_eq!(place_of(path).as_deref(), Some(place), "{path}");
         }
     }
 

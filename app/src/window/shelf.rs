@@ -9,7 +9,7 @@ use lovelock_project::error::Place;
 use super::brushes::Brushes;
 use super::command::Command;
 use super::compare::PaneEdit;
-use super::control::{Headed, enter_pane, leave_pane, note, section_with, untitled_section};
+use super::control::{Headed, enter_pane, leave_pane, note, section_with, spoken_part, untitled_section};
 use super::panel::Panel;
 use super::panels::body::BodyPanel;
 use super::panels::body_look::BodyLookPanel;
@@ -201,13 +201,19 @@ impl<'a> Shelf<'a> {
             enter_pane(ui.ctx(), pane.pane);
         }
         let (problems, opens) = (panel.problems(readings), panel.opens(project, readings));
+        let title = panel.title();
+        let contents = |ui: &mut Ui| {
+            // In a column, floating or in a tab, screen readers tell which panel a control belongs to.
+            spoken_part(ui, title);
+            panel.ui(ui, project, readings)
+        };
         let shown = if has_header {
-            section_with(ui, panel.title(), opens, &problems, |ui| panel.ui(ui, project, readings))
+            section_with(ui, title, opens, &problems, contents)
         } else {
             for problem in &problems {
                 ui.colored_label(ui.visuals().error_fg_color, problem);
             }
-            let inner = untitled_section(ui, panel.title(), |ui| panel.ui(ui, project, readings));
+            let inner = untitled_section(ui, title, contents);
             Headed { inner: Some(inner), header: None, is_mark_clicked: false }
         };
         panel.end_pass(shown.inner.is_some());

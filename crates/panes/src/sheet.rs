@@ -233,15 +233,14 @@ fn fitted(text: &str, room: usize) -> &str {
     fitting
 }
 
-/// Preferred aspect ratio of a pane.
-const SHAPE: f32 = 1.35;
-
-/// The number of columns that makes `panes` largest on a page of that size, with a header of height `header` over each.
+/// The number of columns that shows the hair largest in `panes` on a page of that size, with a header of height `header` over each.
+///
+/// A camera that frames the hair fits it into the shorter side of an image, so a pane is as large as the largest square in it.
 pub fn pane_columns(panes: usize, [width, height]: [f32; 2], header: f32) -> usize {
     let larger = |columns: usize| {
         let rows = panes.div_ceil(columns);
         let (wide, high) = (width / columns as f32, (height / rows as f32 - header).max(1.0));
-        (wide / SHAPE).min(high)
+        wide.min(high)
     };
     (1..=panes.max(1)).max_by(|&a, &b| larger(a).total_cmp(&larger(b)).then(b.cmp(&a))).unwrap_or(1)
 }
@@ -337,6 +336,21 @@ mod tests {
                 let ink = (x..x + width).any(|x| at(&picture, x, y - 13) == INK);
                 assert!(ink, "{count} panes: no word over the pane at {x}, {y}");
             }
+        }
+    }
+
+    #[test]
+    fn panes_have_the_columns_that_show_heads_largest() {
+        // Between two open columns of panels, in the whole window, and on a tall page.
+        for (page, panes, expected) in [
+            ([800.0, 760.0], 6, 3),
+            ([1280.0, 720.0], 6, 3),
+            ([840.0, 700.0], 2, 2),
+            ([840.0, 700.0], 3, 2),
+            ([600.0, 1200.0], 6, 2),
+            ([300.0, 900.0], 2, 1),
+        ] {
+            assert_eq!(pane_columns(panes, page, 26.0), expected, "{panes} panes on {page:?}");
         }
     }
 

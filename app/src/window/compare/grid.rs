@@ -35,7 +35,7 @@ mod tests {
     #[test]
     fn panes_fill_a_wide_page_and_do_not_overlap() {
         let page = Rect::from_min_size(pos2(10.0, 20.0), Vec2::new(1200.0, 700.0));
-        for (panes, expected) in [(1, 1), (2, 2), (3, 2), (4, 2), (5, 3), (6, 3)] {
+        for (panes, expected) in [(1, 1), (2, 2), (3, 3), (4, 2), (5, 3), (6, 3)] {
             assert_eq!(columns(panes, page.size(), 26.0), expected, "{panes}");
             let places = places(panes, page, 26.0);
             assert_eq!(places.len(), panes);

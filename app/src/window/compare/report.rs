@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use egui::{DragValue, Modal, RichText, ScrollArea, Ui};
+use egui::{DragValue, RichText, ScrollArea, Ui};
 use lovelock_base::settings::Choices;
 use lovelock_render::{Backend, ShadowMethod};
 use lovelock_session::clock::Pace;
@@ -13,7 +13,7 @@ use lovelock_session::progress::Progress;
 use lovelock_study::batch::{CompareRequest, compare};
 use lovelock_study::report::CompareReport;
 
-use crate::window::control::{HoverTooltip, note};
+use crate::window::control::{HoverTooltip, note, titled_dialog};
 use crate::window::purpose::Purpose;
 use crate::window::{Window, images, notices, theme};
 
@@ -241,7 +241,7 @@ impl Window {
         let clip = self.session.frames(self.document.project().recording.fps);
         let reporting = &mut self.pages.compare.reporting;
         let Some(options) = reporting.options.as_mut().filter(|_| reporting.is_open) else { return };
-        let modal = Modal::new(egui::Id::unique("report")).show(ctx, |ui| options_ui(ui, options, clip));
+        let modal = titled_dialog("report", "Export report").show(ctx, |ui| options_ui(ui, options, clip));
         match modal.inner {
             DialogAnswer::Go => {
                 reporting.is_open = false;

@@ -1,6 +1,7 @@
 //! The rows of a panel: a label, a control with its unit, a tooltip, and a mark where the value differs from its default.
 
 mod curve;
+mod dialog;
 mod keying;
 mod menu_key;
 mod number;
@@ -19,6 +20,7 @@ use std::borrow::Cow;
 use egui::{Id, PointerButton, Response, RichText, Sense, TextStyle, Ui, Vec2};
 
 pub(crate) use curve::{Axis, Curve, CurveModel, curve};
+pub(crate) use dialog::titled_dialog;
 pub(crate) use keying::{
     Keying, begin as begin_keying, end as end_keying, enter_pane, leave_pane, of_setting,
 };
@@ -30,7 +32,7 @@ pub(crate) use reveal::{
     end_pass as end_reveal, is_looking, reveal, section as revealed_section, shown as revealed,
 };
 pub(crate) use setting::{all_settings, any_setting, entry, setting, settings};
-pub(crate) use spoken::spoken_value;
+pub(crate) use spoken::{spoken_part, spoken_value};
 pub(crate) use tooltip::{HoverTooltip, keep_free_area};
 
 use super::theme;

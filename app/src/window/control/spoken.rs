@@ -1,10 +1,18 @@
-//! What screen readers say of a control besides its name: its value with its unit, and its range.
+//! What screen readers say besides the names of controls: values with their units, ranges, and the names of parts of the window.
 
 use egui::accesskit::Role;
 use egui::{Id, Response, Ui};
 
 /// How many of the newest widgets may hold the number field of a slider that was just shown.
 const NEWEST: usize = 8;
+
+/// Names the part of the window that `ui` shows.
+pub(crate) fn spoken_part(ui: &Ui, title: &str) {
+    ui.ctx().accesskit_node_builder(ui.unique_id(), |node| {
+        node.set_role(Role::Group);
+        node.set_label(title);
+    });
+}
 
 /// Gives a control that is painted here, such as a lane, the value of a slider.
 pub(crate) fn spoken_value(response: &Response, value: f64, range: [f64; 2], text: impl FnOnce() -> String) {

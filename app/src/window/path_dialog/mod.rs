@@ -9,12 +9,12 @@ use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Align, Id, Key, Layout, Modal, Modifiers, RichText, Ui, vec2};
+use egui::{Align, Id, Key, Layout, Modifiers, RichText, Ui, vec2};
 use lovelock_base::clock::Stopwatch;
 
 use super::purpose::{Purpose, Replaces};
 use super::theme;
-use crate::window::control::HoverTooltip;
+use crate::window::control::{HoverTooltip, titled_dialog};
 use folder::Folder;
 
 /// A dialog that returns sooner than this without a path was never shown, seconds: no user closes a dialog so quickly, and the
@@ -174,7 +174,7 @@ impl PathDialog {
         let (at, prefix) = self.place();
         self.folder.show(&at, self.purpose, ctx);
         let mut answer = Answer::Pending;
-        let response = Modal::new(Id::unique("path")).show(ctx, |ui| {
+        let response = titled_dialog("path", self.purpose.title()).show(ctx, |ui| {
             ui.set_width(WIDTH);
             ui.heading(self.purpose.title());
             if let Some(about) = &self.about {

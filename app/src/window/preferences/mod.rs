@@ -2,10 +2,10 @@
 
 mod keys;
 
-use egui::{Context, Id, Modal, RichText, Ui, WidgetInfo};
+use egui::{Context, RichText, Ui, WidgetInfo};
 use egui_material_icons::icons::{ICON_ADD, ICON_REMOVE};
 
-use super::control::HoverTooltip;
+use super::control::{HoverTooltip, titled_dialog};
 use super::{Layout, Window, scale, theme};
 
 /// Width of the dialog, points.
@@ -45,7 +45,7 @@ impl Window {
         // Before anything else could take it.
         preferences.keys.take_key(ctx, &mut layout.keys);
         let room = ctx.content_rect().size();
-        let modal = Modal::new(Id::unique("preferences")).show(ctx, |ui| {
+        let modal = titled_dialog("preferences", "Preferences").show(ctx, |ui| {
             ui.set_width(WIDTH.min(room.x - 40.0));
             ui.heading("Preferences");
             ui.add_space(4.0);

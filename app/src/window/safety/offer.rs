@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Context, Id, Modal, RichText, TextureHandle, TextureOptions, Ui, Vec2, vec2};
+use egui::{Context, RichText, TextureHandle, TextureOptions, Ui, Vec2, vec2};
 use lovelock_base::words::counted;
 use lovelock_project::journal::Unsaved;
 
 use super::ago::ago;
-use crate::window::control::HoverTooltip;
+use crate::window::control::{HoverTooltip, titled_dialog};
 use crate::window::files::Pending;
 use crate::window::notices::Kind;
 use crate::window::{Window, remember, theme};
@@ -88,7 +88,8 @@ impl Window {
         if !offers.is_open || self.files.pending.is_some() || self.files.dialog.is_some() {
             return;
         }
-        let modal = Modal::new(Id::unique("unsaved changes of earlier runs")).show(ctx, |ui| {
+        let title = "Unsaved changes of earlier runs";
+        let modal = titled_dialog("unsaved changes of earlier runs", title).show(ctx, |ui| {
             ui.set_width(560.0);
             match offers.asked.and_then(|k| Some((k, offers.list.get(k)?))) {
                 Some((k, offer)) => ask(ui, k, &offer.unsaved),

@@ -1,9 +1,9 @@
 //! The dialog that offers recordings that were interrupted.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use egui::{Context, Id, Modal, RichText, Ui};
+use egui::{Context, RichText, Ui};
 use lovelock_base::clock::Stopwatch;
 use lovelock_base::words::counted;
 use lovelock_project::Project;
@@ -12,7 +12,7 @@ use lovelock_project::unfinished::{Interrupted, Job, Recordings, Running};
 use lovelock_record::{UnfinishedKind, can_be_kept, discard_unfinished, keep_unfinished};
 
 use super::ago::ago;
-use crate::window::control::HoverTooltip;
+use crate::window::control::{HoverTooltip, titled_dialog};
 use crate::window::recorder::State;
 use crate::window::{Window, theme};
 
@@ -26,8 +26,8 @@ const TAKE_BEGINS_SECS: f64 = 3.0;
 pub(super) struct Works {
     recordings: Recordings,
     list: Vec<Interrupted>,
-    /// Those of which too little is there to keep.
-    too_short: Vec<PathBuf>,
+    /// Whether enough of each is there to keep, or why it cannot be read.
+    keeps: Vec<(PathBuf, Result<bool, String>)>,
     is_open: bool,
     /// The one that shall be discarded, while the user is asked.
     asked: Option<usize>,
@@ -63,27 +63,31 @@ impl Works {
         if let Some(again) = &self.again {
             self.list.retain(|work| work.job.out != again.job.out);
         }
-        let outs = self.list.iter().map(|work| &work.job.out);
-        self.too_short = outs.filter(|out| !can_be_kept(out)).cloned().collect();
+        let keeps = |work: &Interrupted| {
+            let out = work.job.out.clone();
+            let keeps = can_be_kept(&out).map_err(|error| error.to_string());
+            (out, keeps)
+        };
+        self.keeps = self.list.iter().map(keeps).collect();
         (self.is_open, self.asked) = (!self.list.is_empty(), None);
         self.is_open
+    }
+
+    /// Whether enough of a recording is there to keep, or why it cannot be read.
+    fn keeps(&self, out: &Path) -> Option<&Result<bool, String>> {
+        self.keeps.iter().find_map(|(known, keeps)| (known == out).then_some(keeps))
     }
 }
 
 impl Window {
     /// Notes a recording of `project` that begins.
-    pub(in crate::window) fn note_recording(
-        &mut self,
-        out: &std::path::Path,
-        project: &Project,
-        panes: bool,
-    ) {
+    pub(in crate::window) fn note_recording(&mut self, out: &Path, project: &Project, panes: bool) {
         let running = self.safety.works.recordings.begin(&Job::new(out, project, panes));
         self.media.recorder.note(running);
     }
 
     /// Notes a take that begins.
-    pub(in crate::window) fn note_take(&mut self, out: &std::path::Path) {
+    pub(in crate::window) fn note_take(&mut self, out: &Path) {
         let running = self.safety.works.recordings.begin(&Job::new(out, self.document.project(), false));
         self.safety.works.take = running.map(|running| (running, Stopwatch::start()));
     }
@@ -114,7 +118,7 @@ impl Window {
             return;
         }
         let busy = self.media.recorder.is_running();
-        let modal = Modal::new(Id::unique("interrupted recordings")).show(ctx, |ui| {
+        let modal = titled_dialog("interrupted recordings", "Interrupted recordings").show(ctx, |ui| {
             ui.set_width(520.0);
             match works.asked.and_then(|k| Some((k, works.list.get(k)?))) {
                 Some((k, work)) => ask(ui, k, work),
@@ -193,7 +197,7 @@ fn list(ui: &mut Ui, works: &Works, busy: bool) -> Option<Answer> {
     ui.heading("Recordings were interrupted");
     for (k, work) in works.list.iter().enumerate().take(SHOWN) {
         ui.separator();
-        answer = answer.or(one(ui, k, work, (busy, works.too_short.contains(&work.job.out))));
+        answer = answer.or(one(ui, k, work, (busy, works.keeps(&work.job.out))));
     }
     if works.list.len() > SHOWN {
         ui.separator();
@@ -207,13 +211,21 @@ fn list(ui: &mut Ui, works: &Works, busy: bool) -> Option<Answer> {
     answer
 }
 
-fn one(ui: &mut Ui, k: usize, work: &Interrupted, (busy, is_too_short): (bool, bool)) -> Option<Answer> {
+fn one(
+    ui: &mut Ui,
+    k: usize,
+    work: &Interrupted,
+    (busy, keeps): (bool, Option<&Result<bool, String>>),
+) -> Option<Answer> {
     let mut answer = None;
     let name = work.job.out.file_name().unwrap_or_default().to_string_lossy();
     ui.label(RichText::new(format!("{name}, a {}", work.kind.label())).strong());
     let place = RichText::new(work.job.out.display().to_string()).color(theme::quiet());
     ui.add(egui::Label::new(place).truncate());
     ui.label(RichText::new(format!("Begun {}.", ago(work.job.since()))).color(theme::quiet()));
+    if let Some(Err(error)) = keeps {
+        ui.label(RichText::new(error).color(theme::wrong()));
+    }
     ui.horizontal(|ui| {
         if let Some(command) = &work.job.command {
             let tip = "It was recorded on the command line, which can record it again.";
@@ -237,6 +249,8 @@ fn one(ui: &mut Ui, k: usize, work: &Interrupted, (busy, is_too_short): (bool, b
             UnfinishedKind::Sequence => "Lists the complete images in the manifest of the folder.",
             UnfinishedKind::Take => "Makes a take of the frames that were recorded, up to the last second.",
         };
+        // One that cannot be read now may be readable at the click.
+        let is_too_short = matches!(keeps, Some(Ok(false)));
         let keep = ui.add_enabled(!is_too_short, egui::Button::new("Keep what is there"));
         let why_not = "Less than a second was recorded, too little to keep.";
         if keep.hover_tooltip(tip).disabled_hover_tooltip(why_not).clicked() {

@@ -6,12 +6,12 @@ mod recent;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
-use egui::{Context, Id, Modal, RichText, ScrollArea, TextureHandle, Ui, vec2};
+use egui::{Context, RichText, ScrollArea, TextureHandle, Ui, vec2};
 use lovelock_jobs::examples::{Example, Made, folder};
 use lovelock_project::error::ProjectError;
 
 use super::command::Command;
-use super::control::HoverTooltip;
+use super::control::{HoverTooltip, titled_dialog};
 use super::files::Pending;
 use super::page::Page;
 use super::purpose::Purpose;
@@ -78,7 +78,7 @@ impl Window {
         }
         let Self { start, layout, .. } = self;
         let room = ctx.content_rect().size();
-        let modal = Modal::new(Id::unique("start page")).show(ctx, |ui| {
+        let modal = titled_dialog("start page", "Start page").show(ctx, |ui| {
             ui.set_width(WIDTH.min(room.x - 40.0));
             start.contents(ui, layout, room.y - 60.0)
         });

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Context, Id, Key, Modal, RichText, TextEdit, Ui};
+use egui::{Context, Key, RichText, TextEdit, Ui};
 use lovelock_project::Project;
 use lovelock_project::error::ProjectError;
 use lovelock_project::styles::{OwnStyles, Style, own_id};
 
 use super::{Browser, Entry, short};
 use crate::window::command::Command;
+use crate::window::control::titled_dialog;
 use crate::window::theme;
 
 /// Height of the line that says why a name cannot be used, points: it is there from the start, so that no button moves.
@@ -54,9 +55,9 @@ impl Dialog {
 /// Shows the dialog that is open, and does what it is for.
 pub(super) fn show(ctx: &Context, project: &mut Project, browser: &mut Browser) {
     let Some(mut dialog) = browser.dialog.take() else { return };
-    let modal = Modal::new(Id::unique("style")).show(ctx, |ui| {
+    let (heading, button) = dialog.words();
+    let modal = titled_dialog("style", &heading).show(ctx, |ui| {
         ui.set_width(360.0);
-        let (heading, button) = dialog.words();
         ui.heading(heading);
         let mut entered = false;
         let mut named = false;

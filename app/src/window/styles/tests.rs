@@ -390,7 +390,8 @@ fn a_style_is_updated_and_a_name_in_use_is_asked_for() {
     // A name in use: Cancel returns to the name, Replace replaces.
     let length = longer(&mut harness);
     save_as(&mut harness, "Mine");
-    assert!(harness.query_by_label("You already have a style Mine. Replace it?").is_some());
+    let question = "You already have a style Mine. Replace it?";
+    assert!(harness.query_by_role_and_label(Role::Dialog, question).is_some());
     control(&harness, Role::Button, "Cancel").click();
     harness.run_steps(3);
     assert!(stored() < length);

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::super::command::{COMMANDS, Command};
+use egui::accesskit::Role;
 use egui::{Event, Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -121,6 +122,16 @@ fn the_button_confirms_the_suggested_path() {
     let wanted =
         PathBuf::from(format!("/somewhere/my hair.{}", lovelock_project::project::PROJECT_EXTENSION));
     assert_eq!(harness.state().state.1, Some(Answer::Path(Purpose::SaveProject, wanted)));
+}
+
+#[test]
+fn dialogs_have_names_for_screen_readers() {
+    let mut harness = palette();
+    harness.run();
+    assert!(harness.query_by_role_and_label(Role::Dialog, "Command palette").is_some());
+    let mut harness = dialog(Purpose::Film, Path::new("/out/dance.mp4"));
+    harness.run();
+    assert!(harness.query_by_role_and_label(Role::Dialog, Purpose::Film.title()).is_some());
 }
 
 #[test]

@@ -177,6 +177,17 @@ fn a_floating_panel_edits_in_one_undo_step_and_its_button_docks_it() {
 }
 
 #[test]
+fn panels_have_names_for_screen_readers_in_a_column_and_floating() {
+    let mut harness = window();
+    assert!(harness.query_by_role_and_label(Role::Group, "Hairstyle").is_some());
+    assert!(harness.query_by_role_and_label(Role::Group, "Sound").is_none(), "it is folded");
+    move_to(&mut harness, "Sound", Place::Floating(None));
+    for role in [Role::Window, Role::Group] {
+        assert!(harness.query_by_role_and_label(role, "Sound").is_some(), "{role:?}");
+    }
+}
+
+#[test]
 fn the_menu_lists_the_places_of_all_panels() {
     let mut harness = window();
     super::whole::press_button(&mut harness, "Panels");

@@ -194,6 +194,9 @@ fn keys_pause_playback_and_hide_the_panels() {
     assert!(harness.query_by_label_contains("Open the menu of a control").is_some());
     key(&mut harness, Modifiers::NONE, Key::Escape);
     assert!(harness.query_by_label_contains("Open the menu of a control").is_none());
+    key(&mut harness, Modifiers::SHIFT, Key::Questionmark);
+    press_button(&mut harness, "Close");
+    assert!(harness.query_by_label_contains("Open the menu of a control").is_none());
     let looping = project(&harness).motion.looping;
     press_button(&mut harness, Command::PlayPause.info().expect("in the table").label);
     assert!(of(&harness).session.playing);

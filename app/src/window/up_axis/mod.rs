@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, sync_channel};
 
 use egui::{
-    Button, ColorImage, Context, Grid, Id, Image, Modal, RichText, Role, TextureHandle, TextureOptions,
-    WidgetInfo,
+    Button, ColorImage, Context, Grid, Image, RichText, Role, TextureHandle, TextureOptions, WidgetInfo,
 };
 use lovelock_groom::{ImportSettings, UpAxis, guess_units, load_hair};
 use lovelock_project::Project;
 use lovelock_project::history::GestureId;
 use lovelock_project::project::HairSource;
 
+use super::control::titled_dialog;
 use super::{Window, theme};
 
 /// Side of an image of the hair, points and pixels.
@@ -139,7 +139,7 @@ impl Window {
             return;
         };
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let modal = Modal::new(Id::unique("up axis")).show(ctx, |ui| {
+        let modal = titled_dialog("up axis", "Which way is up?").show(ctx, |ui| {
             ui.heading("Which way is up?");
             ui.label(format!("{name} does not state its up axis, and its strands leave it in doubt."));
             ui.add_space(6.0);

@@ -19,6 +19,11 @@ pub use report::{RecordReport, StageMedians};
 pub use request::RecordRequest;
 pub use take::{TakeRecordReport, is_take, record_take};
 
+/// The folder in which the user keeps videos, otherwise the home folder. `None` for a user without a home.
+pub fn videos_folder() -> Option<std::path::PathBuf> {
+    dirs::video_dir().filter(|folder| folder.is_dir()).or_else(dirs::home_dir)
+}
+
 #[cfg(test)]
 mod curve_tests;
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod trial;
 
+use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -320,12 +321,21 @@ pub fn changed_part(before: &Project, after: &Project) -> &'static str {
         (before.body != after.body, "body"),
         (before.motion != after.motion, "motion"),
         (before.recording != after.recording, "recording"),
-        (before.compare != after.compare, "compare"),
+        (before.compare != after.compare, changed_panes(before, after)),
         (before.timeline.markers != after.timeline.markers, "marker"),
         (before.timeline.preroll_secs != after.timeline.preroll_secs, "pre-roll"),
         (before.timeline.tracks != after.timeline.tracks, "track"),
     ];
     parts.iter().find(|(differs, _)| *differs).map_or("change", |(_, name)| name)
+}
+
+/// The name of a change of the comparison.
+fn changed_panes(before: &Project, after: &Project) -> &'static str {
+    match after.compare.panes.len().cmp(&before.compare.panes.len()) {
+        Ordering::Greater => "add pane",
+        Ordering::Less => "remove pane",
+        Ordering::Equal => "comparison",
+    }
 }
 
 #[cfg(test)]

@@ -65,6 +65,19 @@ fn an_edit_of_a_value_with_a_track_sets_a_key() {
 }
 
 #[test]
+fn undo_says_that_a_pane_was_added_or_removed() {
+    let mut document = Document::new(Project::default(), None);
+    let panes = document.project().compare.panes.len();
+    document.change_seen(STILL, |project| project.compare.panes.extend_from_within(..1));
+    assert_eq!(document.project().compare.panes.len(), panes + 1);
+    assert_eq!(document.history().undo_label(), Some("add pane"));
+    document.change_seen(STILL, |project| project.compare.panes.truncate(panes));
+    assert_eq!(document.history().undo_label(), Some("remove pane"));
+    document.change_seen(STILL, |project| project.compare.panes.swap(0, 1));
+    assert_eq!(document.history().undo_label(), Some("comparison"));
+}
+
+#[test]
 fn a_tried_style_is_shown_and_not_applied() {
     let mut document = animated();
     let before = Arc::clone(document.project());

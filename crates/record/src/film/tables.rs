@@ -254,12 +254,18 @@ pub(crate) fn is_left(film: &Path) -> bool {
 }
 
 /// Whether an interrupted recording to `film` left images that play. Changes nothing.
-pub(crate) fn plays(film: &Path) -> bool {
+///
+/// # Errors
+/// If what it left cannot be read.
+pub(crate) fn plays(film: &Path) -> io::Result<bool> {
     let written = Parts::written(film);
     // An older one is kept only where there is no newer one.
     let parts = if written.partial.exists() { written } else { Parts::aside(film) };
-    let tables = File::open(&parts.partial).and_then(|file| parts.playable(&file));
-    tables.is_ok_and(|tables| tables.is_some())
+    match File::open(&parts.partial) {
+        Ok(file) => Ok(parts.playable(&file)?.is_some()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
 }
 
 /// Whether something is set aside that was left of `film` before it was recorded again.
