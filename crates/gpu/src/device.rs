@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bytemuck::Pod;
 
+use crate::compiled::CompiledKernels;
 use crate::constants::ConstantPool;
 use crate::traffic::{Counters, Traffic};
 use crate::{ShaderSource, check_shader};
@@ -53,6 +54,7 @@ pub struct Gpu {
     fault: Fault,
     pub(crate) counters: Counters,
     constants: Mutex<ConstantPool>,
+    pub(crate) compiled: Arc<CompiledKernels>,
     frame: AtomicU64,
     number: u64,
 }
@@ -152,6 +154,7 @@ impl Gpu {
             fault,
             counters: Counters::default(),
             constants: Mutex::default(),
+            compiled: Arc::default(),
             frame: AtomicU64::new(0),
             number: HANDLES.fetch_add(1, Ordering::Relaxed),
         })
@@ -167,6 +170,7 @@ impl Gpu {
             fault: Arc::clone(&self.fault),
             counters: Counters::default(),
             constants: Mutex::default(),
+            compiled: Arc::clone(&self.compiled),
             frame: AtomicU64::new(0),
             number: HANDLES.fetch_add(1, Ordering::Relaxed),
         })

@@ -1,9 +1,9 @@
 //! Compute kernels: a pipeline and the bindings that it uses.
 
-use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-use crate::{Gpu, GpuError, ShaderSource, shader};
+use crate::compiled::Compiled;
+use crate::{Gpu, GpuError, ShaderSource};
 
 /// Threads per workgroup of every kernel with a one-dimensional range of threads.
 pub const THREADS: u32 = 64;
@@ -24,9 +24,7 @@ pub type Constant = (&'static str, f64);
 #[derive(Debug)]
 pub struct Kernel {
     label: &'static str,
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
-    used: BTreeSet<u32>,
+    compiled: Compiled,
     groups: Mutex<BoundGroups>,
 }
 
@@ -84,7 +82,7 @@ impl Resource {
 }
 
 impl Kernel {
-    /// Compiles `entry` of a composed shader.
+    /// Compiles `entry` of a composed shader, unless a handle of the device has done so before.
     ///
     /// # Errors
     /// The file, the line and the reason where the shader does not compile; or the error of the driver.
@@ -103,32 +101,9 @@ impl Kernel {
         entry: &str,
         constants: &[Constant],
     ) -> Result<Self, GpuError> {
-        let checked = shader::check(source)?;
-        let used = checked.bindings_of(entry);
-        let constants: Vec<_> =
-            constants.iter().copied().filter(|(name, _)| checked.has_override(name)).collect();
-        gpu.checked(|| {
-            let module = gpu.module(label, source);
-            let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(label),
-                layout: None,
-                module: &module,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &constants,
-                    ..Default::default()
-                },
-                cache: None,
-            });
-            let layout = pipeline.get_bind_group_layout(0);
-            Self {
-                label,
-                pipeline,
-                layout,
-                used,
-                groups: Mutex::new(BoundGroups { kept: Vec::new(), frames: KEPT_FRAMES }),
-            }
-        })
+        let compiled = gpu.compiled.get(gpu, label, source, entry, constants)?;
+        let groups = Mutex::new(BoundGroups { kept: Vec::new(), frames: KEPT_FRAMES });
+        Ok(Self { label, compiled, groups })
     }
 
     /// Keeps bind groups for this many frames in place of two: for kernels whose resources are used in turn.
@@ -141,7 +116,7 @@ impl Kernel {
     /// Binds resources by their binding numbers. Those that the kernel does not use are ignored. The bind group of an earlier frame is
     /// used again if its resources are the same.
     pub fn bind(&self, gpu: &Gpu, resources: &[(u32, wgpu::BindingResource)]) -> wgpu::BindGroup {
-        let wanted = || resources.iter().filter(|(binding, _)| self.used.contains(binding));
+        let wanted = || resources.iter().filter(|(binding, _)| self.compiled.used.contains(binding));
         let mut groups = self.groups.lock().unwrap_or_else(PoisonError::into_inner);
         let (now, frames) = (gpu.frame(), groups.frames);
         groups.kept.retain(|bound| bound.last + frames >= now);
@@ -166,7 +141,7 @@ impl Kernel {
         gpu.counters.created();
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(self.label),
-            layout: &self.layout,
+            layout: &self.compiled.layout,
             entries: &entries,
         });
         let known = wanted().map(|(binding, resource)| Some((*binding, Resource::of(resource)?)));
@@ -185,7 +160,7 @@ impl Kernel {
         groups: &wgpu::Buffer,
         offset: u64,
     ) {
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(&self.compiled.pipeline);
         pass.set_bind_group(0, group, &[]);
         pass.dispatch_workgroups_indirect(groups, offset);
     }
@@ -195,7 +170,7 @@ impl Kernel {
     pub fn run(&self, pass: &mut wgpu::ComputePass, group: &wgpu::BindGroup, threads: u64) {
         let groups = u32::try_from(threads.div_ceil(u64::from(THREADS))).unwrap_or(u32::MAX);
         if groups > 0 {
-            pass.set_pipeline(&self.pipeline);
+            pass.set_pipeline(&self.compiled.pipeline);
             pass.set_bind_group(0, group, &[]);
             // The fewest rows that are possible, all of one length, leave the fewest surplus threads.
             let rows = groups.div_ceil(MAX_GROUPS);

@@ -2,6 +2,7 @@
 
 mod buffer;
 mod commands;
+mod compiled;
 mod constants;
 mod device;
 mod kernel;
