@@ -313,7 +313,9 @@ impl Window {
                     let has_panes = panes.is_some();
                     self.media.recorder.start(project.clone(), access, path, panes, resume, ctx);
                     self.note_recording(path, &project, has_panes);
-                    self.layout.recordings = path.parent().map(Path::to_owned);
+                    if self.media.recorder.is_running() {
+                        self.layout.recordings = path.parent().map(Path::to_owned);
+                    }
                 }
             }
             Purpose::ExportStyle => self.export_style(path)?,

@@ -110,7 +110,7 @@ impl Window {
             .path()
             .and_then(Path::parent)
             .map_or_else(|| std::env::current_dir().unwrap_or_default(), Path::to_owned);
-        let last = self.layout.recordings.as_deref();
+        let last = self.layout.recordings.as_deref().filter(|folder| folder.is_dir());
         let recordings = || recordings_folder(self.document.path(), last, videos_folder);
         let suggestion = match purpose {
             Purpose::Open

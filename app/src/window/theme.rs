@@ -9,7 +9,6 @@ use lovelock_panes::sheet::Sheet;
 use lovelock_render::ColorScale;
 
 use egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
-use egui::style::NumberFormatter;
 use egui::{
     Color32, CornerRadius, FontData, FontFamily, FontId, Margin, Stroke, TextStyle, Theme, ThemePreference,
     Vec2, Visuals,
@@ -233,10 +232,6 @@ pub(crate) fn apply(ctx: &egui::Context) {
     ctx.set_visuals_of(Theme::Dark, visuals(Visuals::dark(), &DARK));
     ctx.set_visuals_of(Theme::Light, visuals(Visuals::light(), &LIGHT));
     ctx.all_styles_mut(|style| {
-        // With a minus sign. What is typed may have a hyphen instead.
-        style.number_formatter = NumberFormatter::new(|number, decimals| {
-            egui::emath::format_with_decimals_in_range(number, decimals).replace('-', "−")
-        });
         style.spacing.item_spacing = Vec2::new(6.0, 5.0);
         style.spacing.slider_width = 96.0;
         style.spacing.button_padding = Vec2::new(8.0, 3.0);

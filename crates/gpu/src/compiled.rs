@@ -10,7 +10,7 @@ use crate::{Gpu, GpuError, ShaderSource, shader};
 
 /// The most that are kept: several times as many as the shadow methods and a renderer have. Versions of a shader that is being edited push
 /// out what was not used for longest.
-const MOST: usize = 256;
+const MOST: usize = 512;
 
 /// What a kernel is compiled from.
 #[derive(Debug, Eq, PartialEq)]
@@ -44,26 +44,34 @@ impl CompiledKernels {
         entry: &str,
         constants: &[Constant],
     ) -> Result<Compiled, GpuError> {
+        // Passes of a method get the constants of all. One whose name a shader does not contain changes nothing there.
+        let used = constants.iter().filter(|(name, _)| source.text().contains(name));
         let origin = Origin {
             text: xxh3_128(source.text().as_bytes()),
             entry: entry.to_owned(),
-            constants: constants.iter().map(|(name, value)| (*name, value.to_bits())).collect(),
+            constants: used.map(|(name, value)| (*name, value.to_bits())).collect(),
         };
-        let known = self.take(&origin);
+        if let Some(known) = self.find(&origin) {
+            return Ok(known);
+        }
         // Others are not kept waiting meanwhile: two that compile the same both succeed.
-        let compiled = known.map_or_else(|| compile(gpu, label, source, entry, constants), Ok)?;
+        let compiled = compile(gpu, label, source, entry, constants)?;
         self.keep(origin, compiled.clone());
         Ok(compiled)
     }
 
-    fn take(&self, origin: &Origin) -> Option<Compiled> {
+    fn find(&self, origin: &Origin) -> Option<Compiled> {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let at = kept.iter().position(|(known, _)| known == origin)?;
-        kept.remove(at).map(|(_, compiled)| compiled)
+        let found = kept.remove(at)?;
+        let compiled = found.1.clone();
+        kept.push_back(found);
+        Some(compiled)
     }
 
     fn keep(&self, origin: Origin, compiled: Compiled) {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.retain(|(known, _)| *known != origin);
         if kept.len() >= MOST {
             kept.pop_front();
         }
@@ -126,20 +134,26 @@ mod tests {
         assert_eq!(first.used, BTreeSet::from([1]));
         assert_eq!(get(&gpu.handle(), &source, 2.0).expect("it is known").pipeline, first.pipeline);
         // Controls: another constant and another text are other kernels, and what does not compile is not kept.
-        assert_ne!(get(&gpu, &source, 3.0).expect("it compiles").pipeline, first.pipeline);
+        let third = get(&gpu, &source, 3.0).expect("it compiles");
+        assert_ne!(third.pipeline, first.pipeline);
         let other = ShaderSource::new(&[SCALE, ShaderPart { name: "more.wgsl", text: "const MORE = 1;\n" }]);
         assert_ne!(get(&gpu, &other, 2.0).expect("it compiles").pipeline, first.pipeline);
         let broken = ShaderSource::new(&[ShaderPart { name: "broken.wgsl", text: "fn" }]);
         let error = get(&gpu, &broken, 2.0).expect_err("it does not compile");
-        assert!(error.to_string().starts_with("broken.wgsl, line 1"), "{error}");
+        assert!(error.to_string().starts_with("broken.wgsl, line "), "{error}");
         let kept = |gpu: &Gpu| gpu.compiled.0.lock().expect("no test has panicked").len();
         assert_eq!(kept(&gpu), 3);
-        // Many others push out what was not used for longest.
-        for text in 0..MOST as u128 - 1 {
+        // A constant that the shader does not have makes no other kernel.
+        let more = [("times", 2.0), ("absent", 1.0)];
+        let same = gpu.compiled.get(&gpu, "scale", &source, "scale", &more).expect("it is known");
+        assert_eq!((same.pipeline, kept(&gpu)), (first.pipeline.clone(), 3));
+        // Many others push out what was not used for longest, which is not the first.
+        for text in 0..MOST as u128 - 2 {
             let origin = Origin { text, entry: String::new(), constants: Vec::new() };
             gpu.compiled.keep(origin, first.clone());
         }
         assert_eq!(kept(&gpu), MOST);
-        assert_ne!(get(&gpu, &source, 2.0).expect("it compiles").pipeline, first.pipeline);
+        assert_eq!(get(&gpu, &source, 2.0).expect("it is known").pipeline, first.pipeline);
+        assert_ne!(get(&gpu, &source, 3.0).expect("it compiles").pipeline, third.pipeline);
     }
 }

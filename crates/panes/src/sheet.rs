@@ -25,6 +25,8 @@ const INK: [u8; 3] = [236, 238, 242];
 pub struct Sheet {
     /// The panes left and right of a dividing line and its position as a fraction of the width; `None` shows all panes in a grid.
     pub wipe: Option<([usize; 2], f32)>,
+    /// The columns of the grid; those that show the hair largest if there is no number.
+    pub columns: Option<usize>,
     /// What they show.
     pub view: LiveView,
     /// Whether times and errors are written under the panes. Times differ between runs.
@@ -42,7 +44,7 @@ type Place = [u32; 4];
 impl Default for Sheet {
     /// Side by side and without times, so that the same panes give the same pixels.
     fn default() -> Self {
-        Self { wipe: None, view: LiveView::default(), figures: false, colors: Self::COLORS }
+        Self { wipe: None, columns: None, view: LiveView::default(), figures: false, colors: Self::COLORS }
     }
 }
 
@@ -70,12 +72,12 @@ impl Sheet {
         }
     }
 
-    /// The size of the whole image if each of `panes` has the size `pane`, in a grid of `columns`.
-    pub fn size_of(&self, panes: usize, columns: usize, pane: [u32; 2]) -> [u32; 2] {
+    /// The size of the whole image if each of `panes` has the size `pane`, in one column if [`Self::columns`] has no number.
+    pub fn size_of(&self, panes: usize, pane: [u32; 2]) -> [u32; 2] {
         let (columns, rows) = if self.wipe.is_some() {
             (1, 1)
         } else {
-            let columns = columns.clamp(1, panes.max(1));
+            let columns = self.columns.unwrap_or(1).clamp(1, panes.max(1));
             (columns as u32, panes.max(1).div_ceil(columns) as u32)
         };
         [columns * (pane[0] + GAP) - GAP + self.legend_width(), rows * (pane[1] + HEADER + GAP) - GAP]
@@ -93,7 +95,8 @@ impl Sheet {
         if self.wipe.is_some() {
             return vec![[0, HEADER, width, height.saturating_sub(HEADER).max(16)]];
         }
-        let columns = pane_columns(panes, [width as f32, height as f32], HEADER as f32) as u32;
+        let chosen = || pane_columns(panes, [width as f32, height as f32], |_| HEADER as f32);
+        let columns = self.columns.unwrap_or_else(chosen).clamp(1, panes.max(1)) as u32;
         let rows = (panes.max(1) as u32).div_ceil(columns);
         let each = |length: u32, count: u32| (length + GAP).saturating_sub(count * GAP) / count;
         let (w, h) = (each(width, columns), each(height, rows));
@@ -233,13 +236,15 @@ fn fitted(text: &str, room: usize) -> &str {
     fitting
 }
 
-/// The number of columns that shows the hair largest in `panes` on a page of that size, with a header of height `header` over each.
+/// The number of columns that shows the hair largest in `panes` on a page of that size. Over each pane is a header of the height that
+/// `header` says for its width.
 ///
 /// A camera that frames the hair fits it into the shorter side of an image, so a pane is as large as the largest square in it.
-pub fn pane_columns(panes: usize, [width, height]: [f32; 2], header: f32) -> usize {
+pub fn pane_columns(panes: usize, [width, height]: [f32; 2], header: impl Fn(f32) -> f32) -> usize {
     let larger = |columns: usize| {
         let rows = panes.div_ceil(columns);
-        let (wide, high) = (width / columns as f32, (height / rows as f32 - header).max(1.0));
+        let wide = width / columns as f32;
+        let high = (height / rows as f32 - header(wide)).max(1.0);
         wide.min(high)
     };
     (1..=panes.max(1)).max_by(|&a, &b| larger(a).total_cmp(&larger(b)).then(b.cmp(&a))).unwrap_or(1)
@@ -293,6 +298,7 @@ mod tests {
 
     fn sheet(wipe: Option<([usize; 2], f32)>) -> Sheet {
         Sheet {
+            columns: None,
             wipe,
             view: LiveView::default(),
             figures: true,
@@ -322,13 +328,14 @@ mod tests {
         let panes = COLORS.map(|color| pane(color, [200, 120]));
         for count in 1..=COLORS.len() {
             let shown: Vec<SheetPane> = panes[..count].iter().enumerate().map(|(i, p)| (i, p, 1.0)).collect();
-            let sheet = sheet(None);
-            let columns = pane_columns(count, [1280.0, 720.0], 26.0);
-            let whole = sheet.size_of(count, columns, [200, 120]);
+            // Also in columns that the size of the whole would not have.
+            let sheet = Sheet { columns: Some(count.div_ceil(2)), ..sheet(None) };
+            let whole = sheet.size_of(count, [200, 120]);
             let picture = sheet.compose(&shown, whole);
             assert_eq!([picture.width, picture.height], whole);
             let places = sheet.places(count, whole);
             assert_eq!(places.len(), count);
+            assert!(places.iter().all(|place| place[2..] == [200, 120]), "{places:?}");
             for (&[x, y, width, height], color) in places.iter().zip(COLORS) {
                 assert_eq!(at(&picture, x + 1, y + 1), color, "{count} panes");
                 assert_eq!(at(&picture, x + width - 1, y + 1), color);
@@ -341,7 +348,8 @@ mod tests {
 
     #[test]
     fn panes_have_the_columns_that_show_heads_largest() {
-        // Between two open columns of panels, in the whole window, and on a tall page.
+        let header = |width: f32| if width < 420.0 { 48.0 } else { 26.0 };
+        // Between two open columns of panels, in the whole window, on a tall page, and where the header of more columns is higher.
         for (page, panes, expected) in [
             ([800.0, 760.0], 6, 3),
             ([1280.0, 720.0], 6, 3),
@@ -349,8 +357,9 @@ mod tests {
             ([840.0, 700.0], 3, 2),
             ([600.0, 1200.0], 6, 2),
             ([300.0, 900.0], 2, 1),
+            ([700.0, 520.0], 3, 3),
         ] {
-            assert_eq!(pane_columns(panes, page, 26.0), expected, "{panes} panes on {page:?}");
+            assert_eq!(pane_columns(panes, page, header), expected, "{panes} panes on {page:?}");
         }
     }
 
@@ -358,7 +367,7 @@ mod tests {
     fn a_wipe_shows_one_pane_left_of_its_line_and_the_other_right_of_it() {
         let (left, right) = (pane(COLORS[0], [200, 120]), pane(COLORS[1], [100, 60]));
         let sheet = sheet(Some(([0, 1], 0.25)));
-        let whole = sheet.size_of(2, 2, [200, 120]);
+        let whole = sheet.size_of(2, [200, 120]);
         let picture = sheet.compose(&[(0, &left, 1.0), (1, &right, 1.0)], whole);
         let row = HEADER + 20;
         assert_eq!([at(&picture, 5, row), at(&picture, 45, row)], [COLORS[0]; 2]);
@@ -373,8 +382,8 @@ mod tests {
         let drawn = pane(COLORS[2], [200, 200]);
         let mut colored = sheet(None);
         colored.view.shows = LiveShows::PictureError;
-        let whole = colored.size_of(1, 1, [200, 200]);
-        assert!(whole[0] > sheet(None).size_of(1, 1, [200, 200])[0]);
+        let whole = colored.size_of(1, [200, 200]);
+        assert!(whole[0] > sheet(None).size_of(1, [200, 200])[0]);
         let picture = colored.compose(&[(0, &drawn, 1.0)], whole);
         let beside = |picture: &Picture, color: [u8; 3]| {
             (210..picture.width).any(|x| (0..picture.height).any(|y| at(picture, x, y) == color))

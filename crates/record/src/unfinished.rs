@@ -111,11 +111,11 @@ pub fn can_be_kept(out: &Path) -> Result<bool, RecordError> {
     }
 }
 
-/// Number of frames of an unfinished take; 0 where its recording had ended before its first second was written.
+/// Number of frames of an unfinished take; 0 where none can be read, as where its recording had ended before its first second was written.
 fn frames_of_take(part: &Path) -> Result<u64, RecordError> {
     match TakeReader::open(part) {
         Ok(take) => Ok(take.frames()),
-        Err(TakeError::NotATake { .. } | TakeError::Empty { .. }) => Ok(0),
+        Err(TakeError::NotATake { .. } | TakeError::Malformed { .. } | TakeError::Empty { .. }) => Ok(0),
         Err(TakeError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => Ok(0),
         Err(TakeError::Io { path, action, source }) => Err(RecordError::Io { path, action, source }),
         Err(error) => Err(RecordError::request(error.to_string())),

@@ -104,6 +104,7 @@ impl CompareLayout {
     /// The panes composed into one image as they are on the screen.
     pub(crate) fn sheet(&self) -> Sheet {
         Sheet {
+            columns: None,
             wipe: self.wipe.then_some((self.pair, self.split)),
             view: self.view(),
             figures: true,

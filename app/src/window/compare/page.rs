@@ -33,7 +33,7 @@ impl Window {
     ) -> Option<header::PaneAction> {
         let count = project.compare.panes.len();
         let mut asked = None;
-        for (index, cell) in grid::places(count, page, header::HEIGHT).into_iter().enumerate() {
+        for (index, cell) in grid::places(count, page).into_iter().enumerate() {
             self.pages.compare.bar = header::height(cell.width());
             asked = self.header(ui, cell, index, project).or(asked);
             let mut place = cell;

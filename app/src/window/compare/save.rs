@@ -9,7 +9,7 @@ use lovelock_panes::sheet::Sheet;
 use lovelock_record as recording;
 
 use super::costs::Way;
-use super::{Compare, grid, header};
+use super::{Compare, grid};
 use crate::window::Window;
 
 /// An image that is being written.
@@ -32,7 +32,7 @@ impl Compare {
     }
 
     /// Starts to write the panes that are on the screen, with their labels.
-    fn save(&mut self, sheet: Sheet, columns: usize, panes: &[usize], path: &Path, ctx: &egui::Context) {
+    fn save(&mut self, sheet: Sheet, panes: &[usize], path: &Path, ctx: &egui::Context) {
         let shown: Vec<(usize, Arc<LivePane>, f64)> = panes
             .iter()
             .filter_map(|&index| {
@@ -42,7 +42,7 @@ impl Compare {
                 Some((index, pane, ms))
             })
             .collect();
-        let whole = sheet.size_of(shown.len(), columns, self.wanted);
+        let whole = sheet.size_of(shown.len(), self.wanted);
         let (sender, done) = sync_channel(1);
         let (to, wake) = (path.to_owned(), ctx.clone());
         let write = move || {
@@ -70,9 +70,9 @@ impl Window {
     pub(in crate::window) fn save_panes(&mut self, path: &Path, ctx: &egui::Context) {
         let layout = &self.layout.compare;
         let panes = layout.visible(self.document.project().compare.panes.len());
-        let columns = grid::columns(panes.len(), self.pages.compare.page, header::HEIGHT);
-        let sheet = layout.sheet();
-        self.pages.compare.save(sheet, columns, &panes, path, ctx);
+        let columns = Some(grid::columns(panes.len(), self.pages.compare.page));
+        let sheet = Sheet { columns, ..layout.sheet() };
+        self.pages.compare.save(sheet, &panes, path, ctx);
     }
 
     /// Shows a message that the image of the panes was saved, or why not.

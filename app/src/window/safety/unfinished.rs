@@ -252,7 +252,7 @@ fn one(
         // One that cannot be read now may be readable at the click.
         let is_too_short = matches!(keeps, Some(Ok(false)));
         let keep = ui.add_enabled(!is_too_short, egui::Button::new("Keep what is there"));
-        let why_not = "Less than a second was recorded, too little to keep.";
+        let why_not = "Less than a second of it can be read, too little to keep.";
         if keep.hover_tooltip(tip).disabled_hover_tooltip(why_not).clicked() {
             answer = Some(Answer::Keep(k));
         }

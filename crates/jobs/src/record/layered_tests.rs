@@ -241,6 +241,7 @@ fn unsupported_settings_are_refused_with_a_message() {
     let at = |name: &str| dir.path().join(name);
     let exr = Some(SequenceFormat::Exr);
     let sheet = lovelock_panes::sheet::Sheet {
+        columns: None,
         wipe: None,
         view: lovelock_panes::view::LiveView::default(),
         figures: true,

@@ -13,7 +13,7 @@ use lovelock_shadow::{
     ClusterDeviation, ClusterSeeds, DepthRange, LayerGrowth, LightFrame, LineFilter, MomentKind, ShadowError,
     ShadowInput, ShadowMethod, ShadowSettings, TexelFilter, converged, cpu_shadow,
 };
-use lovelock_testkit::suite::sample;
+use lovelock_testkit::suite::{cases, sample};
 
 const LIGHT: Vec3 = Vec3::new(0.3, -1.0, 0.2);
 
@@ -123,13 +123,16 @@ fn every_answer_is_a_transmittance() {
         let every = if what == "a crowded texel" { 7 } else { 2 };
         for &method in ShadowMethod::ALL {
             let mut map = cpu_shadow(method);
+            // Each ray through a crowd meets all of it: every ray of the columns does so in the long suite alone.
+            let slow = method == ShadowMethod::RayTraced && what == "a crowded texel";
+            let has_columns = !slow || cases(&[false], &[true])[0];
             let mut check = |input: &ShadowInput, settings: &ShadowSettings| {
                 let done = map.build(input, settings);
                 assert!(done.is_ok(), "{method}, {what}: {done:?}");
                 out.fill(f32::NAN);
                 map.transmittance_at(&x, &y, &z, &mut out);
                 assert!(out.iter().all(|t| (0.0..=1.0).contains(t)), "{method}, {what}: {out:?}");
-                if let Some(columns) = map.column_map() {
+                if let Some(columns) = has_columns.then(|| map.column_map()).flatten() {
                     assert!(
                         columns.transmittance.iter().all(|t| (0.0..=1.0).contains(t)),
                         "{method}, {what}"

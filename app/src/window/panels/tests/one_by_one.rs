@@ -406,10 +406,6 @@ fn picture_settings_are_changed() {
     let exposure = control(&harness, Role::SpinButton, "Exposure").rect().center();
     type_at(&mut harness, exposure, "-1.5");
     assert_eq!(harness.state().state.project.picture.exposure_stops, -1.5);
-    let shown = control(&harness, Role::SpinButton, "Exposure").value().expect("a number");
-    assert!(shown.starts_with("−1.5"), "{shown}");
-    type_at(&mut harness, exposure, "−2");
-    assert_eq!(harness.state().state.project.picture.exposure_stops, -2.0);
 }
 
 #[test]
