@@ -2,8 +2,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::compiled::Compiled;
-use crate::{Gpu, GpuError, ShaderSource};
+use crate::compiled::{Compiled, Origin};
+use crate::{Gpu, GpuError, ShaderSource, shader};
 
 /// Threads per workgroup of every kernel with a one-dimensional range of threads.
 pub const THREADS: u32 = 64;
@@ -101,7 +101,8 @@ impl Kernel {
         entry: &str,
         constants: &[Constant],
     ) -> Result<Self, GpuError> {
-        let compiled = gpu.compiled.get(gpu, label, source, entry, constants)?;
+        let origin = Origin::new(source.text(), entry, constants);
+        let compiled = gpu.compiled.get(origin, || compile(gpu, label, source, entry, constants))?;
         let groups = Mutex::new(BoundGroups { kept: Vec::new(), frames: KEPT_FRAMES });
         Ok(Self { label, compiled, groups })
     }
@@ -176,5 +177,87 @@ impl Kernel {
             let rows = groups.div_ceil(MAX_GROUPS);
             pass.dispatch_workgroups(groups.div_ceil(rows), rows, 1);
         }
+    }
+}
+
+fn compile(
+    gpu: &Gpu,
+    label: &str,
+    source: &ShaderSource,
+    entry: &str,
+    constants: &[Constant],
+) -> Result<Compiled, GpuError> {
+    let checked = shader::check(source)?;
+    let used = checked.bindings_of(entry);
+    let constants: Vec<_> =
+        constants.iter().copied().filter(|(name, _)| checked.has_override(name)).collect();
+    gpu.checked(|| {
+        let module = gpu.module(label, source);
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(label),
+            layout: None,
+            module: &module,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                ..Default::default()
+            },
+            cache: None,
+        });
+        let layout = pipeline.get_bind_group_layout(0);
+        Compiled { pipeline, layout, used }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::ShaderPart;
+    use crate::compiled::MOST;
+
+    const SCALE: ShaderPart = ShaderPart {
+        name: "scale.wgsl",
+        text: "override times: u32 = 2u;\n\
+            @group(0) @binding(1) var<storage, read_write> a: array<u32>;\n\
+            @compute @workgroup_size(64) fn scale(@builtin(global_invocation_id) id: vec3<u32>) { a[id.x] *= times; }\n",
+    };
+
+    #[test]
+    fn handles_of_a_device_share_kernels_of_the_same_text_and_constants() {
+        let gpu = match Gpu::open() {
+            Ok(gpu) => gpu,
+            Err(error) => return lovelock_testkit::skip_without_adapter(&error),
+        };
+        let source = ShaderSource::new(&[SCALE]);
+        let with = |gpu: &Gpu, source: &ShaderSource, constants: &[Constant]| {
+            Kernel::specialised(gpu, "scale", source, "scale", constants).map(|kernel| kernel.compiled)
+        };
+        let get = |gpu: &Gpu, source: &ShaderSource, times| with(gpu, source, &[("times", times)]);
+        let first = get(&gpu, &source, 2.0).expect("it compiles");
+        assert_eq!(first.used, BTreeSet::from([1]));
+        assert_eq!(get(&gpu.handle(), &source, 2.0).expect("it is known").pipeline, first.pipeline);
+        // Controls: another constant and another text are other kernels, and what does not compile is not kept.
+        let third = get(&gpu, &source, 3.0).expect("it compiles");
+        assert_ne!(third.pipeline, first.pipeline);
+        let other = ShaderSource::new(&[SCALE, ShaderPart { name: "more.wgsl", text: "const MORE = 1;\n" }]);
+        assert_ne!(get(&gpu, &other, 2.0).expect("it compiles").pipeline, first.pipeline);
+        let broken = ShaderSource::new(&[ShaderPart { name: "broken.wgsl", text: "fn" }]);
+        let error = get(&gpu, &broken, 2.0).expect_err("it does not compile");
+        assert!(error.to_string().starts_with("broken.wgsl, line "), "{error}");
+        let kept = |gpu: &Gpu| gpu.compiled.len();
+        assert_eq!(kept(&gpu), 3);
+        // A constant that the shader does not have makes no other kernel.
+        let more = [("times", 2.0), ("absent", 1.0)];
+        let same = with(&gpu, &source, &more).expect("it is known");
+        assert_eq!((same.pipeline, kept(&gpu)), (first.pipeline.clone(), 3));
+        // Many others push out what was not used for longest, which is not the first.
+        for text in 0..MOST - 2 {
+            gpu.compiled.keep(Origin::new(&text.to_string(), "", &[]), first.clone());
+        }
+        assert_eq!(kept(&gpu), MOST);
+        assert_eq!(get(&gpu, &source, 2.0).expect("it is known").pipeline, first.pipeline);
+        assert_ne!(get(&gpu, &source, 3.0).expect("it compiles").pipeline, third.pipeline);
     }
 }
