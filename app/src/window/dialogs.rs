@@ -86,7 +86,10 @@ impl Window {
                     close = ui.small_button("Close").clicked();
                 });
                 let most = ctx.content_rect().height() * 0.85;
-                ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, keys::list);
+                let area = ScrollArea::vertical().min_scrolled_height(most).max_height(most);
+                // The bar lies over what is scrolled.
+                let beside_bar = egui::Margin { right: 10, ..egui::Margin::ZERO };
+                area.show(ui, |ui| egui::Frame::new().inner_margin(beside_bar).show(ui, keys::list));
             });
             self.help.keys_shown = !(modal.should_close() || change || close);
             if change {
