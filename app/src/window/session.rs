@@ -124,7 +124,7 @@ impl Session {
                 super::images::wake(&wake);
             }
         };
-        let worker = Worker::start(Arc::clone(project), access.clone(), Arc::new(wake))?;
+        let worker = Worker::start(Arc::clone(project), access.clone(), device, Arc::new(wake))?;
         Ok(Self {
             worker,
             painter,

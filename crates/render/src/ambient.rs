@@ -300,12 +300,9 @@ impl<'a> HairPoints<'a> {
     fn new(input: &FrameInput<'a>, mut lines: Vec<(Range<usize>, f32)>) -> Self {
         lines.clear();
         let all = input.style.strands.count().max(1) as f32;
-        let guides = match input.hair {
-            HairPose::Guides(frame) => Some(frame),
-            HairPose::Strands(_) => input.guides,
-        };
+        let guides = input.hair.guides().or(input.guides);
         match (guides, input.hair) {
-            (Some(frame), _) | (None, HairPose::Guides(frame)) => {
+            (Some(frame), _) | (None, HairPose::Guides(frame) | HairPose::Resident(frame, _)) => {
                 let guides = &frame.guides;
                 let points = guides.points_per_guide;
                 let known = guides.x.len().min(guides.y.len()).min(guides.z.len());

@@ -35,9 +35,14 @@ pub(crate) fn cluster_share(input: &FrameInput, height: u32) -> f32 {
 
 /// The guides that clusters follow.
 pub(crate) fn guides_of<'a>(input: &FrameInput<'a>) -> Option<&'a GuideFrame> {
-    match input.hair {
-        HairPose::Guides(guides) => Some(guides),
-        HairPose::Strands(_) => input.guides,
+    input.hair.guides().or(input.guides)
+}
+
+/// The pose of hair that follows the guides of `input`, if it has any.
+pub(crate) fn pose_by_guides<'a>(input: &FrameInput<'a>) -> HairPose<'a> {
+    match (input.hair, input.guides) {
+        (HairPose::Strands(_), Some(guides)) => HairPose::Guides(guides),
+        (pose, _) => pose,
     }
 }
 
@@ -58,8 +63,7 @@ pub(crate) fn of_casters<'a>(
     hair: &'a ClusterHair,
     picture: &'a PictureSettings,
 ) -> FrameInput<'a> {
-    let hair_pose = guides_of(input).map_or(input.hair, HairPose::Guides);
-    FrameInput { style: &hair.casters, hair: hair_pose, picture, ..*input }
+    FrameInput { style: &hair.casters, hair: pose_by_guides(input), picture, ..*input }
 }
 
 /// The clusters of the last hairstyle, kept until it or their division changes.

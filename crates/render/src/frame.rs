@@ -9,7 +9,7 @@ use lovelock_groom::{GuideFrame, HairLook, Hairstyle, Strands, interpolate};
 use lovelock_motion::{Body, Skin};
 use lovelock_satf::ClusterHair;
 
-use crate::{Camera, KnownTransmittance, Light, PictureSettings, ShadowSettings};
+use crate::{Camera, KnownTransmittance, Light, PictureSettings, ResidentGuides, ShadowSettings};
 
 /// Everything that one picture shows, at one time.
 #[derive(Clone, Copy)]
@@ -82,16 +82,26 @@ impl<'a> FrameInput<'a> {
 pub enum HairPose<'a> {
     /// Given by guides, from which the backend interpolates strands.
     Guides(&'a GuideFrame),
+    /// The same where a graphics device has the guides too: a renderer on that device takes them from there, and uploads none.
+    Resident(&'a GuideFrame, &'a ResidentGuides),
     /// Given strands, with as many points as the hairstyle.
     Strands(&'a Strands),
 }
 
-impl HairPose<'_> {
+impl<'a> HairPose<'a> {
+    /// The guides, if strands are interpolated from them.
+    pub(crate) fn guides(self) -> Option<&'a GuideFrame> {
+        match self {
+            Self::Guides(guides) | Self::Resident(guides, _) => Some(guides),
+            Self::Strands(_) => None,
+        }
+    }
+
     /// The strands in memory: the given ones, or strands interpolated into `made`.
     pub(crate) fn strands<'s>(&'s self, style: &Hairstyle, made: &'s mut Strands) -> &'s Strands {
         match self {
             Self::Strands(strands) => strands,
-            Self::Guides(guides) => {
+            Self::Guides(guides) | Self::Resident(guides, _) => {
                 interpolate(style, guides, made);
                 made
             }

@@ -21,6 +21,7 @@ mod light_view;
 mod map_view;
 mod picture;
 mod renderer;
+mod resident;
 mod scene_light;
 mod shadow_look;
 mod skin;
@@ -42,7 +43,7 @@ pub use gpu::{Finished, GpuRenderer, MAX_IN_FLIGHT, PendingPicture, Shrinker, al
 pub use image::{DeviceImage, DeviceImages, Image};
 pub use known::KnownTransmittance;
 pub use layers::Layers;
-pub use lovelock_gpu::{Gpu, GpuError, PassTime, Traffic, check_shader, wgpu};
+pub use lovelock_gpu::{Gpu, GpuError, PassTime, PooledBuffer, Traffic, check_shader, wgpu};
 pub use lovelock_picture::{
     Backend, BackgroundForm, BodyLook, HairDrawing, Light, LightKind, LightRig, MAX_LIGHTS, MAX_PIXELS,
     MAX_SIDE, MapForm, MapValue, MapView, PictureFit, PictureSettings, SizeError, StrandCount, Transparency,
@@ -58,5 +59,6 @@ pub use lovelock_shadow::{
     TexelFilter, UserMethod, VoxelMarchSettings, fallbacks_sentence, new_method,
 };
 pub use picture::Picture;
+pub use resident::ResidentGuides;
 pub use renderer::Renderer;
 pub use standing::light_frame;

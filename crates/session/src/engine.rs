@@ -1,5 +1,6 @@
 //! The simulation of a scene, step by step. It is synchronous and has no clock.
 
+mod ahead;
 mod brushing;
 mod combing;
 mod preroll;
@@ -61,6 +62,8 @@ pub struct Engine {
     step_secs: f64,
     simulation: Simulation,
     stepper: Stepper,
+    /// Whether a graphics device has begun a step that is not finished.
+    unfinished: bool,
     /// The transition of strands to other ties, while it lasts.
     combing: Option<Combing>,
     /// Current step, counted from the scene's time zero.
@@ -120,6 +123,7 @@ impl Engine {
             step_secs,
             simulation,
             stepper: Stepper::default(),
+            unfinished: false,
             combing: None,
             at_step: 0,
             taken: 0,
@@ -181,7 +185,7 @@ impl Engine {
         self.set_settings(&project.simulation);
         self.animation = Animation::of(project);
         self.preroll_secs = f64::from(project.timeline.preroll_secs);
-        self.stepper.choose(project.picture.simulate);
+        self.stepper.choose(project.picture.simulate, &mut self.simulation);
         self.styling = Styling::of(project, self.styling.take());
         self.restyle(f64::NEG_INFINITY);
     }
@@ -277,7 +281,7 @@ impl Engine {
         self.at_step += 1;
         self.follow_timeline(lead_in_secs);
         self.place_body(lead_in_secs);
-        self.simulate();
+        self.simulate(false);
     }
 
     /// The report of the last step.
@@ -298,6 +302,12 @@ impl Engine {
 
     /// Advances by one step.
     pub fn step(&mut self) {
+        self.finish_step();
+        self.advance(false);
+    }
+
+    /// Advances by one step, or only begins it if it may go ahead. Returns whether it is done.
+    fn advance(&mut self, ahead: bool) -> bool {
         self.cut = std::mem::take(&mut self.jumped_since);
         let before = self.scene.repetition(self.time_secs());
         self.at_step += 1;
@@ -308,8 +318,16 @@ impl Engine {
         self.follow_timeline(f64::NEG_INFINITY);
         self.place_body(f64::NEG_INFINITY);
         self.times.motion += watch.lap_ms();
-        self.simulate();
+        let done = self.simulate(ahead);
         self.times.simulate += watch.ms();
+        if done {
+            self.end_step();
+        }
+        done
+    }
+
+    /// Counts a step that is done.
+    fn end_step(&mut self) {
         self.taken += 1;
         self.count();
         let step_secs = self.step_secs;
@@ -365,18 +383,25 @@ impl Engine {
         }
     }
 
-    /// Simulates one step of the hair with the current pose.
-    fn simulate(&mut self) {
+    /// Simulates one step of the hair with the current pose, or only begins it if it may go `ahead`. Returns whether it is done.
+    fn simulate(&mut self, ahead: bool) -> bool {
         // The wind depends only on the time, not on how the engine got there.
         self.simulation.set_wind_secs(self.time_secs() - self.step_secs);
         self.simulated_secs += self.step_secs;
         let placed = [&self.colliders[..], &self.sheltering];
         let input = body_at(self.simulated_secs, &self.scene, &self.pose, placed, &self.field);
         let secs = self.step_secs as f32;
-        self.report = self.stepper.step(&mut self.simulation, &input, &self.settings, secs);
+        let (stepper, simulation) = (&mut self.stepper, &mut self.simulation);
+        let report = if ahead {
+            stepper.begin(simulation, &input, &self.settings, secs)
+        } else {
+            Some(stepper.step(simulation, &input, &self.settings, secs))
+        };
         if std::mem::take(&mut self.rest_is_new) {
             self.rest_inside = self.simulation.rest_inside();
         }
+        self.report = report.unwrap_or(self.report);
+        report.is_some()
     }
 
     /// Moves the hair with the body after a jump.
@@ -385,7 +410,7 @@ impl Engine {
         self.restyle(f64::NEG_INFINITY);
         self.simulated_secs += JUMP_SECS;
         self.place_body(f64::NEG_INFINITY);
-        self.simulate();
+        self.simulate(false);
         self.count();
     }
 

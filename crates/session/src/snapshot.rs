@@ -8,7 +8,7 @@ use lovelock_groom::{GuideFrame, HairLook, Strands, interpolate};
 use lovelock_motion::{Pose, Skin, skin};
 use lovelock_project::Project;
 use lovelock_project::project::CameraSection;
-use lovelock_render::{Camera, CarriedHair, FrameInput, HairPose};
+use lovelock_render::{Camera, CarriedHair, FrameInput, HairPose, ResidentGuides};
 use lovelock_simulation::{InsidePoint, StepReport};
 
 use crate::scene::{Figure, Lens, Scene, camera_at};
@@ -34,6 +34,8 @@ pub struct FrameSnapshot {
     pub skin: Skin,
     /// The guides, world space.
     pub guides: GuideFrame,
+    /// The same guides on the graphics device of the window, if it simulates them.
+    pub resident: Option<ResidentGuides>,
     /// Brows and lashes, world space; empty if the scene has none.
     pub skin_strands: Strands,
     /// The strands, world space, where they do not follow the guides: those of a cache of curves.
@@ -66,6 +68,7 @@ impl FrameSnapshot {
             skin: Skin::default(),
             skin_strands: Strands::default(),
             guides: GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides },
+            resident: None,
             strands: None,
             report: StepReport::default(),
             rest_inside: None,
@@ -124,7 +127,11 @@ impl FrameSnapshot {
     pub fn frame_input<'a>(&'a self, project: &'a Project, camera: &'a Camera) -> FrameInput<'a> {
         FrameInput {
             style: &self.scene.style,
-            hair: self.strands.as_ref().map_or(HairPose::Guides(&self.guides), HairPose::Strands),
+            hair: match (&self.strands, &self.resident) {
+                (Some(strands), _) => HairPose::Strands(strands),
+                (None, Some(resident)) => HairPose::Resident(&self.guides, resident),
+                (None, None) => HairPose::Guides(&self.guides),
+            },
             guides: Some(&self.guides),
             look: self.look(project),
             body: Some((&self.scene.body, &self.skin)),

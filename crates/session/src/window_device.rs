@@ -7,17 +7,33 @@ use lovelock_render::{DeviceImages, Gpu};
 /// The graphics device of the window. Without a window, or if the window's device cannot render, there is none. After a loss the window
 /// opens another one, which takes its place here.
 #[derive(Clone, Debug, Default)]
-pub struct WindowDevice(Arc<Mutex<Option<Arc<Gpu>>>>);
+pub struct WindowDevice {
+    device: Arc<Mutex<Option<Arc<Gpu>>>>,
+    /// Whether hair is simulated on it even if it is a software adapter, as in tests.
+    simulates_in_software: bool,
+}
 
 impl WindowDevice {
     /// The device, if there is one.
     pub fn get(&self) -> Option<Arc<Gpu>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.device.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Replaces the device.
     pub fn set(&self, gpu: Option<Arc<Gpu>>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = gpu;
+        *self.device.lock().unwrap_or_else(PoisonError::into_inner) = gpu;
+    }
+
+    /// The device for the simulation of hair, so that guides are drawn where they are. None on a software adapter, where a step would wait
+    /// for the window's images, and while the device is lost.
+    pub(crate) fn for_simulation(&self) -> Option<Arc<Gpu>> {
+        self.get().filter(|gpu| !gpu.is_lost() && (self.simulates_in_software || !gpu.is_software()))
+    }
+
+    /// `gpu`, on which hair is simulated whatever it is.
+    #[cfg(test)]
+    pub(crate) fn simulating(gpu: Arc<Gpu>) -> Self {
+        Self { device: Arc::new(Mutex::new(Some(gpu))), simulates_in_software: true }
     }
 
     /// The textures of a series of images on the device: those in `images` while the device is the same, otherwise new ones; none

@@ -28,6 +28,7 @@ use crate::scene::Scene;
 use crate::snapshot::FrameSnapshot;
 use crate::strokes::{StrokeReport, StrokeStart};
 use crate::take::TakeProgress;
+use crate::window_device::WindowDevice;
 
 /// Maximum number of unread events; more are dropped and logged.
 const MAX_EVENTS: usize = 256;
@@ -154,11 +155,17 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Starts both threads with a project, in playback. The first frame appears when the scene is loaded.
+    /// Starts both threads with a project, in playback. The first frame appears when the scene is loaded. Hair that a graphics card
+    /// simulates is simulated on the device of the window, where it is drawn.
     ///
     /// # Errors
     /// If the system cannot create threads.
-    pub fn start(project: Arc<Project>, access: Access, wake: Wake) -> Result<Self, ProjectError> {
+    pub fn start(
+        project: Arc<Project>,
+        access: Access,
+        window: &WindowDevice,
+        wake: Wake,
+    ) -> Result<Self, ProjectError> {
         let (outbox, events) = Outbox::new(wake);
         let mailbox = Mailbox::default();
         let to_simulation = mailbox.clone();
@@ -167,7 +174,7 @@ impl Worker {
         })?);
         mailbox.post(|requests| requests.project = Some((project, access)));
         let shared = Shared::new(mailbox, loader);
-        let inside = SimulationThread::new(shared.clone(), outbox);
+        let inside = SimulationThread::new(shared.clone(), outbox, window.clone());
         let thread = std::thread::Builder::new()
             .name("lovelock simulation".to_owned())
             .spawn(move || inside.run())

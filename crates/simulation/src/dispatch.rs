@@ -11,7 +11,7 @@ use lovelock_base::simd_versions;
 
 use crate::block::{Block, Work};
 use crate::lanes::Lane;
-use crate::solver::{Plan, advance, measure};
+use crate::solver::{Ending, Plan, advance, measure};
 
 thread_local! {
     /// Working memory that this thread lends to the block it is stepping.
@@ -28,18 +28,18 @@ pub(crate) fn step_block(block: &mut Block, plan: &Plan) {
 }
 
 /// Lets `read` write the state that another device computed into `block`, then measures it as after a step.
-pub(crate) fn accept_block(block: &mut Block, plan: &Plan, read: impl FnOnce(&mut Block)) {
+pub(crate) fn accept_block(block: &mut Block, ending: &Ending, read: impl FnOnce(&mut Block)) {
     WORK.with_borrow_mut(|work| {
         std::mem::swap(work, &mut block.work);
         block.work.fit(block.position.len());
         let Block { position, work: own, .. } = &mut *block;
         for (start, row) in own.start_pose.iter_mut().zip(position.iter()) {
             for (axis, (to, from)) in start.iter_mut().zip(row).enumerate() {
-                *to = from.plus(Lane::splat(plan.rebase[axis]));
+                *to = from.plus(Lane::splat(ending.rebase[axis]));
             }
         }
         read(block);
-        measure(block, plan);
+        measure(block, ending);
         std::mem::swap(work, &mut block.work);
     });
 }

@@ -14,7 +14,7 @@ use crate::colliders::contact::ContactRules;
 use crate::colliders::field::MovingField;
 use crate::colliders::shape::Shape;
 use crate::colliders::{MovingShape, RestColliders, place, transformed};
-use crate::device::{self, DeviceStep, Stamp, Stamps, StepDevice};
+use crate::device::{self, DeviceStep, Reads, Stamp, Stamps, StepDevice};
 use crate::dispatch::step_block;
 use crate::factors::FactorRows;
 use crate::grid::DensityGrid;
@@ -72,6 +72,10 @@ pub struct Simulation {
     shapes: Vec<MovingShape>,
     rows: Vec<RowRates>,
     stamps: Stamps,
+    /// A step that a device has begun.
+    begun: Option<Begun>,
+    /// Whether only a device has what moves beside positions and velocities.
+    is_partial: bool,
 }
 
 impl Simulation {
@@ -132,6 +136,8 @@ impl Simulation {
             shapes: Vec::new(),
             rows: Vec::new(),
             stamps: Stamps::new(),
+            begun: None,
+            is_partial: false,
         }
     }
 
@@ -154,6 +160,7 @@ impl Simulation {
         let from_head = self.head.map_from_head(self.head.place);
         self.blocks.par_iter_mut().for_each(|block| block.place_at_rest(&from_head));
         self.stamps.state = Stamp::new();
+        (self.begun, self.is_partial) = (None, false);
     }
 
     /// Treats the colliders of the next step as new ones even if their number is unchanged, so that their
@@ -179,7 +186,7 @@ impl Simulation {
     /// The same happens if `dt_secs` is not a number or below a microsecond; values above 0.1 s count as 0.1
     /// s.
     pub fn step(&mut self, input: &StepInput, settings: &SimulationSettings, dt_secs: f32) -> StepReport {
-        self.step_with(None, input, settings, dt_secs).0
+        self.step_by(Host::Cpu, input, settings, dt_secs).unwrap_or_default().0
     }
 
     /// As [`Simulation::step`], with the guides advanced by `device`. If it cannot, the CPU does the whole step; the second
@@ -191,19 +198,25 @@ impl Simulation {
         settings: &SimulationSettings,
         dt_secs: f32,
     ) -> (StepReport, Option<String>) {
-        self.step_with(Some(device), input, settings, dt_secs)
+        self.step_by(Host::Device(device), input, settings, dt_secs).unwrap_or_default()
     }
 
-    fn step_with(
+    /// A step by `host`. `None` if a device has begun it.
+    fn step_by(
         &mut self,
-        device: Option<&mut dyn StepDevice>,
+        mut host: Host,
         input: &StepInput,
         settings: &SimulationSettings,
         dt_secs: f32,
-    ) -> (StepReport, Option<String>) {
+    ) -> Option<Stepped> {
+        debug_assert!(self.begun.is_none(), "a step has begun");
         let settings = settings.clamped();
         let head = HeadPose::new(&input.world_from_head).unwrap_or(self.head);
+        let is_step = dt_secs >= SHORTEST_SECS && dt_secs.is_finite();
         let jumped = self.head.jumps_to(&head, self.time_secs, input.time_secs, dt_secs);
+        if self.is_partial && !(is_step && !jumped && self.goes_on(&host, input, &settings)) {
+            self.complete_on(host.device());
+        }
         self.time_secs = input.time_secs;
         let field_changed = self.update_field(input);
         if self.colliders.len() != input.colliders.len() {
@@ -216,35 +229,36 @@ impl Simulation {
         if self.clamped_links != settings.clamped_links {
             self.clamp_links(settings.clamped_links);
         }
-        if jumped || !(dt_secs >= SHORTEST_SECS && dt_secs.is_finite()) {
+        if jumped || !is_step {
             let report = self.move_with_head(head, input.colliders, jumped);
             self.reset_field(input);
-            return (report, None);
+            return Some((report, None));
         }
         let dt_secs = dt_secs.min(0.1);
         self.advance_ties(dt_secs);
-        let report = match device.filter(|_| !self.blocks.is_empty()) {
-            Some(device) => self.simulate(Some(device), &head, input, &settings, dt_secs, field_changed),
+        let stepped = match host {
+            Host::Device(_) | Host::Ahead(_) if !self.blocks.is_empty() => {
+                self.simulate(host, &head, input, &settings, dt_secs, field_changed)
+            }
             // The whole step runs inside the thread pool, so that its threads are woken only once.
-            None => rayon::scope(|_| self.simulate(None, &head, input, &settings, dt_secs, field_changed)),
+            _ => rayon::scope(|_| self.simulate(Host::Cpu, &head, input, &settings, dt_secs, field_changed)),
         };
         self.head = head;
         self.colliders.copy_from_slice(input.colliders);
         self.elapsed_secs += f64::from(dt_secs);
-        report
+        stepped
     }
 
-    /// Simulates the step to `head` and `input`; `field_changed` says whether the field is a new one. The second value says why
-    /// `device` did not do it.
+    /// Simulates the step to `head` and `input`; `field_changed` says whether the field is a new one. `None` if a device has begun it.
     fn simulate(
         &mut self,
-        device: Option<&mut dyn StepDevice>,
+        mut host: Host,
         head: &HeadPose,
         input: &StepInput,
         settings: &SimulationSettings,
         dt_secs: f32,
         field_changed: bool,
-    ) -> (StepReport, Option<String>) {
+    ) -> Option<Stepped> {
         let colliders = input.colliders;
         let origin = head.place;
         let rebase = self.head.place - origin;
@@ -271,7 +285,7 @@ impl Simulation {
         }
         let head_from_last = head_from(&self.head, self.head.place);
         let (grid, blocks, culling) = (&mut self.grid, &self.blocks, self.culling);
-        let deposits = device.is_none();
+        let deposits = matches!(host, Host::Cpu);
         let (field, placed) = (self.field.as_mut(), input.field);
         // The longer task comes first, because the other thread may have to be woken.
         let ((), mut over_dense_cells) = rayon::join(
@@ -330,33 +344,34 @@ impl Simulation {
         let (before, after) = (self.stamps, Stamp::new());
         self.stamps.state = after;
         let mut refusal = None;
-        if let Some(device) = device {
-            let step =
-                DeviceStep { plan: &plan, blocks: &self.blocks, grid: &self.grid, stamps: before, after };
-            let advanced = device.advance(&step);
-            match advanced.and_then(|out| Ok((device::accept(&mut self.blocks, &plan, out)?, out))) {
+        let reads = host.reads();
+        if let Some(device) = host.device() {
+            let (blocks, grid) = (&self.blocks, &self.grid);
+            let step = DeviceStep { plan: &plan, blocks, grid, stamps: before, after, place: origin };
+            let mode = settings.repulsion.mode;
+            let begun = Begun { ending: plan.ending(), substeps: count, mode, before: self.head };
+            let started = device.begin(&step, reads);
+            if started.is_ok() && reads == Reads::Motion {
+                self.begun = Some(begun);
+                return None;
+            }
+            let done = started.and_then(|()| device.finish());
+            match done.and_then(|out| Ok((device::accept(&mut self.blocks, &begun.ending, out, reads)?, out))) {
                 Ok((is_whole, out)) => {
+                    let measured = Measured::of(out);
                     if !is_whole {
                         self.stamps.state = Stamp::new();
                     }
-                    let (hair_volume, hair_volume_at_rest) =
-                        self.grid.volumes(settings.repulsion.mode, out.fullness);
-                    let over_dense_cells = out.over_dense_cells;
-                    let all = self.outcome(first_free);
-                    let report = StepReport {
-                        substeps: count,
-                        over_dense_cells,
-                        hair_volume,
-                        hair_volume_at_rest,
-                        ..all
-                    };
-                    return (report, None);
+                    return Some((self.report_of(&begun, &measured), None));
                 }
                 Err(reason) => {
                     // The device may hold a state under the last stamp that was not accepted.
                     self.stamps.state = Stamp::new();
                     refusal = Some(reason);
                 }
+            }
+            if std::mem::take(&mut self.is_partial) {
+                ahead::rebuild(&mut self.blocks, &self.head);
             }
             over_dense_cells = self.grid.update(&self.blocks, &head_from_last, settings.repulsion);
         }
@@ -366,7 +381,7 @@ impl Simulation {
         let all = self.outcome(first_free);
         let report =
             StepReport { substeps: count, over_dense_cells, hair_volume, hair_volume_at_rest, ..all };
-        (report, refusal)
+        Some((report, refusal))
     }
 
     /// Sums the results of the blocks, always in the same order.
@@ -463,6 +478,7 @@ impl Simulation {
 
     /// Writes the current guides to `frame`; allocates only if its size differs.
     pub fn frame(&self, frame: &mut GuideFrame) {
+        debug_assert!(self.begun.is_none(), "a step has begun");
         frame.time_secs = self.time_secs;
         frame.world_from_head = self.head.affine();
         let points = self.style.guides.points_per_guide;
@@ -510,10 +526,12 @@ fn head_from(head: &HeadPose, origin: Vec3) -> Map {
     Map { turn, shift: turn * (origin - head.place) }
 }
 
+mod ahead;
 mod body;
 mod restyle;
 mod snapshot;
 
+use ahead::{Begun, Host, Measured, Stepped};
 pub use body::BodyNow;
 use restyle::TieBlend;
 pub use snapshot::RestoreError;

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use lovelock_gpu::{Gpu, GpuError, Kernel, PassTimer, Readback, wgpu};
+use lovelock_gpu::{Gpu, GpuError, Kernel, PassTimer, PooledBuffer, Readback, read_buffer, wgpu};
 use lovelock_simulation::Integrator;
-use lovelock_simulation::device::{DeviceOutcome, DeviceStep, SLOTS, SlotContact, StepDevice};
+use lovelock_simulation::device::{DeviceOutcome, DeviceStep, Reads, SLOTS, SlotContact, Stamp, StepDevice};
 
 use crate::buffers::{Buffers, CONTACT_WORDS, Sizes, cells, grid_words};
 use crate::kernels::GuideKernels;
+use crate::publish::Publisher;
 use crate::uniform::{StepUniform, SubstepUniform, samples};
 
 /// Advances the guides of one simulation on a graphics device.
@@ -22,6 +23,11 @@ pub struct GuideDevice {
     readback: Readback,
     bytes: [Vec<u8>; 3],
     outcome: DeviceOutcome,
+    /// The whole state, as it was read last.
+    state: Vec<f32>,
+    publisher: Option<Publisher>,
+    /// The state at the end of the step that was begun.
+    begun: Option<Stamp>,
     is_lost: bool,
     has_room: bool,
 }
@@ -39,9 +45,35 @@ impl GuideDevice {
             readback: Readback::default(),
             bytes: Default::default(),
             outcome: DeviceOutcome::default(),
+            state: Vec::new(),
+            publisher: None,
+            begun: None,
             is_lost: false,
             has_room: true,
         }
+    }
+
+    /// The device with a copy of the guides of each step for renderers on it; see [`GuideDevice::guides`].
+    #[must_use]
+    pub fn publishing(mut self) -> Self {
+        self.publisher = Some(Publisher::new(&self.gpu));
+        self
+    }
+
+    /// The device, by the handle that its kernels were compiled for.
+    pub fn gpu(&self) -> &Gpu {
+        self.kernels.gpu()
+    }
+
+    /// Whether renderers on the device can draw its guides.
+    pub fn publishes(&self) -> bool {
+        self.publisher.is_some()
+    }
+
+    /// The guides of `state` in world space, metres: all x, then all y, then all z, in the order of the hairstyle. `None` if the last step had
+    /// another state, or the device does not publish them.
+    pub fn guides(&self, state: Stamp) -> Option<PooledBuffer> {
+        self.publisher.as_ref()?.guides(state)
     }
 
     /// Whether the graphics device was lost. It then advances nothing any more.
@@ -54,16 +86,17 @@ impl GuideDevice {
         self.has_room
     }
 
-    /// Does a step and reads its outcome.
-    fn run(&mut self, step: &DeviceStep) -> Result<(), GpuError> {
+    /// Submits a step and copying its outcome to memory.
+    fn submit(&mut self, step: &DeviceStep, reads: Reads) -> Result<(), GpuError> {
         let (blocks, points) = (step.blocks() as u64, step.points() as u64);
         let slots = blocks * SLOTS as u64;
         let sizes = Sizes::of(blocks, points, step.first_free() as u64, step.colliders() as u64);
         if let Some(refusal) = sizes.refusal(slots, self.gpu.most_storage_bytes()) {
             return Err(GpuError::Input(refusal));
         }
-        let Self { kernels, gpu, buffers, timer, readback, bytes, outcome, .. } = self;
-        let (kernels, gpu): (&GuideKernels, &Gpu) = (kernels, gpu);
+        let Self { kernels, gpu, buffers, timer, readback, publisher, .. } = self;
+        let (kernels, shared): (&GuideKernels, &Arc<Gpu>) = (kernels, gpu);
+        let gpu: &Gpu = shared;
         let (offsets, stale) = buffers.fill(gpu, step, sizes);
         let stride = step.lattice().2 as u64;
         let pieces = (points - 1).div_ceil(stride);
@@ -137,17 +170,31 @@ impl GuideDevice {
                 }
             }
         });
+        if let Some(publisher) = publisher {
+            publisher.run(shared, kernels, &mut commands, step, buffers.state.raw());
+        }
         let parts = [
-            (buffers.state.raw(), 4 * sizes.state),
+            (buffers.state.raw(), 4 * numbers * reads.rows() as u64),
             (buffers.report.raw(), 4 * slots * CONTACT_WORDS),
             (buffers.grid.raw(), 8),
         ];
         readback.copy(gpu, commands.encoder(), &parts);
         commands.submit();
+        readback.ask(gpu);
+        self.begun = Some(step.state_after());
+        Ok(())
+    }
+
+    /// Waits for the outcome of the step that was submitted.
+    fn read_outcome(&mut self) -> Result<(), GpuError> {
+        let Self { gpu, buffers, readback, bytes, outcome, .. } = self;
+        let Some(after) = self.begun.take() else {
+            return Err(GpuError::Input("no step has begun on the graphics device".to_owned()));
+        };
         let [state, contacts, totals] = bytes;
         readback.read(gpu, &mut [&mut *state, &mut *contacts, &mut *totals])?;
         gpu.check()?;
-        buffers.known.state = Some(step.state_after());
+        buffers.known.state = Some(after);
         outcome.state.resize(state.len() / 4, 0.0);
         bytemuck::cast_slice_mut::<f32, u8>(&mut outcome.state).copy_from_slice(state);
         outcome.contacts.clear();
@@ -156,6 +203,16 @@ impl GuideDevice {
         outcome.over_dense_cells = totals.next().unwrap_or_default();
         outcome.fullness = totals.next().unwrap_or_default();
         Ok(())
+    }
+
+    /// The reason of a failure, after noting what it means for later steps.
+    fn failed(&mut self, error: &GpuError) -> String {
+        self.is_lost |= matches!(error, GpuError::Lost(_)) || self.gpu.is_lost();
+        self.begun = None;
+        if let Some(publisher) = &mut self.publisher {
+            publisher.forget();
+        }
+        error.to_string()
     }
 }
 
@@ -178,18 +235,34 @@ fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {
 }
 
 impl StepDevice for GuideDevice {
-    fn advance(&mut self, step: &DeviceStep) -> Result<&DeviceOutcome, String> {
+    fn begin(&mut self, step: &DeviceStep, reads: Reads) -> Result<(), String> {
         if self.is_lost {
             return Err("the graphics device was lost".to_owned());
         }
-        let done = self.run(step);
+        let done = self.submit(step, reads);
         self.has_room = !matches!(done, Err(GpuError::Input(_)));
-        match done {
+        done.map_err(|error| self.failed(&error))
+    }
+
+    fn finish(&mut self) -> Result<&DeviceOutcome, String> {
+        match self.read_outcome() {
             Ok(()) => Ok(&self.outcome),
-            Err(error) => {
-                self.is_lost |= matches!(error, GpuError::Lost(_)) || self.gpu.is_lost();
-                Err(error.to_string())
-            }
+            Err(error) => Err(self.failed(&error)),
+        }
+    }
+
+    fn holds(&self, state: Stamp) -> bool {
+        !self.is_lost && self.begun.is_none() && self.buffers.known.state == Some(state)
+    }
+
+    fn read_state(&mut self) -> Result<&[f32], String> {
+        let Some(sizes) = self.buffers.known.sizes.filter(|_| self.buffers.known.state.is_some()) else {
+            return Err("the graphics device holds no state".to_owned());
+        };
+        self.state.resize(sizes.state as usize, 0.0);
+        match read_buffer(&self.gpu, self.buffers.state.raw(), &mut self.state) {
+            Ok(()) => Ok(&self.state),
+            Err(error) => Err(self.failed(&error)),
         }
     }
 }

@@ -35,6 +35,7 @@ pub fn shaders() -> Vec<(&'static str, ShaderSource)> {
         ("lengths", composed(&[BENDING, part!("lengths.wgsl")])),
         ("field", composed(&FIELD)),
         ("contacts", composed(&contacts)),
+        ("publish", ShaderSource::new(&[part!("publish.wgsl")])),
     ]
 }
 
@@ -56,6 +57,7 @@ pub struct GuideKernels {
     pub(crate) lengths: Kernel,
     pub(crate) prefetch: Kernel,
     pub(crate) place_points: Kernel,
+    pub(crate) publish: Kernel,
 }
 
 impl GuideKernels {
@@ -88,6 +90,7 @@ impl GuideKernels {
             lengths: kernel("lengths", "lengths")?,
             prefetch: kernel("field", "prefetch")?,
             place_points: kernel("contacts", "place_points")?,
+            publish: kernel("publish", "publish")?,
         })
     }
 

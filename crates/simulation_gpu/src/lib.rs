@@ -5,12 +5,16 @@
 //! prepared by the simulator, and after the step the state is in the simulator again, so that takes, brushes, ties and
 //! saved states work as on the CPU.
 //!
+//! In a window, a device may be that of the renderer: then the guides of a step are drawn from its memory, and a step is begun while the
+//! one before it is drawn ([`GuideDevice::publishing`], [`lovelock_simulation::Simulation::begin_on`]).
+//!
 //! A step is a list of kernels over points, pieces, cells or guides. The constants of the definition come
 //! from the simulator by name, as values of the shaders' `override`s.
 
 mod buffers;
 mod device;
 mod kernels;
+mod publish;
 mod uniform;
 
 pub use device::GuideDevice;

@@ -116,7 +116,7 @@ impl KeptInputs {
 
     fn follow_pose(&mut self, input: &FrameInput) -> bool {
         match input.hair {
-            HairPose::Guides(guides) => {
+            HairPose::Guides(guides) | HairPose::Resident(guides, _) => {
                 let same = self.guides.as_ref() == Some(guides);
                 if !same {
                     match &mut self.guides {

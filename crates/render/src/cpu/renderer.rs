@@ -204,7 +204,7 @@ impl CpuRenderer {
         };
         let mut made = std::mem::take(&mut self.strands);
         let strands = match input.hair {
-            HairPose::Guides(_) if unchanged.strands => &made,
+            HairPose::Guides(_) | HairPose::Resident(..) if unchanged.strands => &made,
             _ => input.hair.strands(input.style, &mut made),
         };
         let stored_ms = watch.ms();

@@ -155,6 +155,11 @@ impl HairBuffers {
         self.shaded.reserve(gpu, points);
         match input.hair {
             HairPose::Guides(guides) => {
+                let guides = (guides, None);
+                self.interpolation.run(gpu, commands, input.style, guides, self.points.raw())?;
+            }
+            HairPose::Resident(guides, there) => {
+                let guides = (guides, Some(there));
                 self.interpolation.run(gpu, commands, input.style, guides, self.points.raw())?;
             }
             HairPose::Strands(strands) => {
@@ -190,7 +195,7 @@ impl HairBuffers {
                     projected: None,
                 })
             }
-            HairPose::Guides(guides) => {
+            HairPose::Guides(guides) | HairPose::Resident(guides, _) => {
                 let found = extent.along(guides, [light.x, light.y, light.z], anchor);
                 found.map_or(Bounds::EMPTY, |(min, max)| Bounds { min, max, ignored: 0 })
             }

@@ -63,7 +63,7 @@ impl MapStage {
     fn field(&mut self, input: &FrameInput, light: &Light) -> Result<Option<Field<'_>>, RenderError> {
         let strands = match input.hair {
             HairPose::Strands(strands) => strands,
-            HairPose::Guides(guides) => {
+            HairPose::Guides(guides) | HairPose::Resident(guides, _) => {
                 interpolate(input.style, guides, &mut self.strands);
                 &self.strands
             }

@@ -39,6 +39,7 @@ fn fade_secs(period_secs: f64) -> f64 {
 fn mixed(now: &Arc<FrameSnapshot>, before: &GuideFrame, share: f64) -> Arc<FrameSnapshot> {
     let mut snapshot = FrameSnapshot::clone(now);
     mix_guides(&now.guides, before, share, &mut snapshot.guides);
+    snapshot.resident = None;
     // The head's transform is exactly that of the body.
     snapshot.guides.world_from_head = now.guides.world_from_head;
     Arc::new(snapshot)

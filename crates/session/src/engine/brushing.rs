@@ -80,6 +80,7 @@ impl Engine {
 
     /// Moves guides to where they are in `frame`, world space, and gives them the rest shape that they have in `rest`, head space.
     pub(crate) fn move_hair(&mut self, frame: &GuideFrame, rest: &Guides, guides: &[usize]) {
+        self.complete();
         self.simulation.move_guides(frame, rest, guides);
     }
 
@@ -109,6 +110,7 @@ impl Engine {
         mut frame: GuideFrame,
         act: impl FnOnce(&mut Brush, &mut GuideFrame, &BrushSurroundings<'_>) -> Vec<usize>,
     ) -> Vec<usize> {
+        self.complete();
         let source = &self.loaded.source;
         let body = self.simulation.body_now();
         let obstacle = BodyAround { rest: &*source.obstacle, scale: source.scale, now: &body };

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use lovelock_record::TakeFrame;
+use lovelock_render::{PooledBuffer, ResidentGuides};
 
 use super::Engine;
 use crate::snapshot::FrameSnapshot;
@@ -15,6 +16,8 @@ pub(crate) struct LastSteps {
     now: TakeFrame,
     mixed: TakeFrame,
     known: bool,
+    /// The guides of both steps on the device of the window, if they are there.
+    resident: [Option<PooledBuffer>; 2],
 }
 
 impl LastSteps {
@@ -25,25 +28,57 @@ impl LastSteps {
 
     /// Drops the stored steps, because time or the hair has jumped, or the current instant has been shown.
     pub(crate) fn forget(&mut self) {
-        self.known = false;
+        (self.known, self.resident) = (false, [None, None]);
     }
 
     /// Advances the engine by one step and stores both states.
     pub(crate) fn step(&mut self, engine: &mut Engine) {
         // Read the state again, because the hair may have been settled or replaced since the last step.
         engine.take_frame(&mut self.before);
+        let before = engine.resident();
         engine.step();
         engine.take_frame(&mut self.now);
+        self.resident = [before, engine.resident()];
         // A jump before the first of the two steps does not matter between them.
         self.now.jumped = engine.report.jumped;
         self.known = true;
+    }
+
+    /// Takes the engine's instant for the later of the two, before it begins the next step.
+    pub(crate) fn follow(&mut self, engine: &Engine) {
+        if self.known {
+            std::mem::swap(&mut self.before, &mut self.now);
+            self.resident.swap(0, 1);
+        } else {
+            engine.take_frame(&mut self.before);
+            self.resident[0] = engine.resident();
+        }
+        engine.take_frame(&mut self.now);
+        self.resident[1] = engine.resident();
+        self.now.jumped = engine.report.jumped;
+        self.known = true;
+    }
+
+    /// The guides at the fraction `t` between the two steps on the device of the window.
+    fn resident(&self, t: f64) -> Option<ResidentGuides> {
+        let heads = [&self.before, &self.now].map(|frame| frame.guides.world_from_head);
+        match &self.resident {
+            [before, now] if self.now.jumped => {
+                if t < 0.5 { before } else { now }.clone().map(ResidentGuides::of_step)
+            }
+            [Some(before), Some(now)] => {
+                Some(ResidentGuides::between([(before, heads[0]), (now, heads[1])], t as f32))
+            }
+            _ => None,
+        }
     }
 }
 
 impl Engine {
     /// The current instant for rendering. Resets the measured times.
     pub fn snapshot(&mut self) -> Arc<FrameSnapshot> {
-        self.snapshot_of(None)
+        let resident = self.resident().map(ResidentGuides::of_step);
+        self.snapshot_of(None, resident)
     }
 
     /// The instant at the fraction `t` (0 to 1) between the last two steps, interpolated like frames of a take. Measurements are those
@@ -54,11 +89,21 @@ impl Engine {
         }
         let clip_secs = self.scene.clip.as_ref().map_or(0.0, |clip| clip.duration_secs);
         steps.mixed.set_between(&steps.before, &steps.now, t, clip_secs);
-        self.snapshot_of(Some((&steps.mixed, t)))
+        let resident = steps.resident(t);
+        self.snapshot_of(Some((&steps.mixed, t)), resident)
     }
 
-    /// The current instant, or one between the given frame and it.
-    fn snapshot_of(&mut self, between: Option<(&TakeFrame, f64)>) -> Arc<FrameSnapshot> {
+    /// The guides on the device of the window, if they are there.
+    fn resident(&self) -> Option<PooledBuffer> {
+        self.stepper.guides(&self.simulation)
+    }
+
+    /// The current instant, or one between the given frame and it, with its guides on the device of the window.
+    fn snapshot_of(
+        &mut self,
+        between: Option<(&TakeFrame, f64)>,
+        resident: Option<ResidentGuides>,
+    ) -> Arc<FrameSnapshot> {
         let watch = Stopwatch::start();
         let ago_secs = between.map_or(0.0, |(_, t)| (1.0 - t) * self.step_secs);
         let combed = self.combing.as_ref().map(|combing| combing.scene(&self.scene, ago_secs));
@@ -80,6 +125,7 @@ impl Engine {
                 frame.pose.clone_from(own_pose);
                 simulation.frame(&mut frame.guides);
             }
+            frame.resident = resident;
             frame.follow_pose();
             // The simulator's clock contains jumps; frames use the time of the scene.
             frame.guides.time_secs = time_secs;

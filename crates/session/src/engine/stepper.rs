@@ -2,14 +2,19 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use lovelock_render::{Backend, Gpu, GpuError};
+use lovelock_render::{Backend, Gpu, GpuError, PooledBuffer};
+use lovelock_simulation::device::StepDevice;
 use lovelock_simulation::{Simulation, SimulationSettings, StepInput, StepReport};
 use lovelock_simulation_gpu::{GuideDevice, GuideKernels, MIN_GUIDES};
+
+use crate::window_device::WindowDevice;
 
 /// Advances guides on the CPU or on a graphics device, which it opens when it first needs it.
 #[derive(Debug, Default)]
 pub(super) struct Stepper {
     choice: Option<Backend>,
+    /// The device of the window, if steps are drawn there. There is none otherwise.
+    window: WindowDevice,
     /// Kept for other hair, so that the device is opened once.
     kernels: Option<Arc<GuideKernels>>,
     device: Option<GuideDevice>,
@@ -23,45 +28,64 @@ pub(super) struct Stepper {
 /// How long the CPU goes on in place of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Failure {
-    /// Until the choice changes: there is no device, it was lost, or its driver failed.
-    Device,
+    /// Until the choice changes or the window has another device than the one with this number: there is no device, it was lost, or its
+    /// driver failed.
+    Device(Option<u64>),
     /// While the hair has this many guides and points per guide, for which the device has no room.
     Size([usize; 2]),
 }
 
 impl Stepper {
-    /// Sets the choice. Another one is tried even if the last device failed.
-    pub(super) fn choose(&mut self, choice: Backend) {
+    /// Lets steps use the device of the window, where they are drawn.
+    pub(super) fn share(&mut self, window: &WindowDevice) {
+        self.window = window.clone();
+    }
+
+    /// Sets the choice for `simulation`. Another one is tried even if the last device failed.
+    pub(super) fn choose(&mut self, choice: Backend, simulation: &mut Simulation) {
         if self.choice != Some(choice) {
             if self.choice.is_some() {
                 shared().has_no_card = false;
             }
-            *self = Self { choice: Some(choice), ..Self::default() };
+            self.complete(simulation);
+            let window = std::mem::take(&mut self.window);
+            *self = Self { choice: Some(choice), window, ..Self::default() };
         }
     }
 
-    /// One with the same choice, for a copy of the simulation.
+    /// One with the same choice, for a copy of the simulation. Its steps do not wait for images of the window.
     pub(super) fn copy(&self) -> Self {
         Self {
             choice: self.choice,
+            window: WindowDevice::default(),
             kernels: self.kernels.clone(),
             device: None,
             on_device: self.on_device,
-            failure: self.failure,
+            failure: self.failure.filter(|_| !self.is_shared()),
             note: self.note.clone(),
         }
     }
 
     /// Takes that of a copy whose simulation goes on here, unless the choice has changed meanwhile.
     pub(super) fn take_settled(&mut self, aside: Self) {
-        if aside.choice == self.choice {
-            *self = aside;
+        if aside.choice != self.choice {
+            return;
+        }
+        self.on_device = aside.on_device;
+        if !self.is_shared() {
+            let window = std::mem::take(&mut self.window);
+            *self = Self { window, ..aside };
         }
     }
 
     /// Whether the last step was that of a graphics device, and why not if one was chosen.
     pub(super) fn state(&self) -> (bool, Option<&Arc<str>>) {
         (self.on_device, self.note.as_ref())
+    }
+
+    /// Whether the next step may be begun while the last one is drawn.
+    pub(super) fn goes_ahead(&self) -> bool {
+        self.on_device && self.device.as_ref().is_some_and(GuideDevice::publishes)
     }
 
     /// One step of `simulation`.
@@ -72,9 +96,57 @@ impl Stepper {
         settings: &SimulationSettings,
         secs: f32,
     ) -> StepReport {
+        let Some(device) = self.device_for(simulation) else { return simulation.step(input, settings, secs) };
+        let (report, refusal) = simulation.step_on(device, input, settings, secs);
+        self.done(refusal.as_deref(), simulation);
+        report
+    }
+
+    /// The same, where a device only begins the step: then there is no report before [`Stepper::finish`].
+    pub(super) fn begin(
+        &mut self,
+        simulation: &mut Simulation,
+        input: &StepInput,
+        settings: &SimulationSettings,
+        secs: f32,
+    ) -> Option<StepReport> {
+        let Some(device) = self.device_for(simulation) else {
+            return Some(simulation.step(input, settings, secs));
+        };
+        let (report, refusal) = simulation.begin_on(device, input, settings, secs)?;
+        self.done(refusal.as_deref(), simulation);
+        Some(report)
+    }
+
+    /// Waits for the step that was begun.
+    pub(super) fn finish(&mut self, simulation: &mut Simulation) -> Option<StepReport> {
+        let (report, refusal) = simulation.finish(self.device.as_mut()?)?;
+        self.done(refusal.as_deref(), simulation);
+        Some(report)
+    }
+
+    /// Brings what only the device has into `simulation`, so that something else can go on with it.
+    pub(super) fn complete(&mut self, simulation: &mut Simulation) {
+        simulation.complete(self.device.as_mut().map(|device| device as &mut dyn StepDevice));
+    }
+
+    /// The guides of `simulation` on the device of the window, if they are there.
+    pub(super) fn guides(&self, simulation: &Simulation) -> Option<PooledBuffer> {
+        self.device.as_ref()?.guides(simulation.state_stamp())
+    }
+
+    /// The device for the next step; `None` for the CPU, which then has the whole state.
+    fn device_for(&mut self, simulation: &mut Simulation) -> Option<&mut GuideDevice> {
         let guides = &simulation.style().guides;
         let size = [guides.count(), guides.points_per_guide];
-        if matches!(self.failure, Some(Failure::Size(refused)) if refused != size) {
+        let window = self.window.for_simulation();
+        let number = window.as_ref().map(|gpu| gpu.number());
+        let is_over = match self.failure {
+            Some(Failure::Size(refused)) => refused != size,
+            Some(Failure::Device(failed)) => number.is_some() && failed != number,
+            None => false,
+        };
+        if is_over {
             (self.failure, self.note) = (None, None);
         }
         let wanted = match self.choice.unwrap_or(Backend::Cpu) {
@@ -82,42 +154,64 @@ impl Stepper {
             Backend::Gpu => true,
             Backend::Auto => size[0] >= MIN_GUIDES,
         };
-        self.on_device = false;
-        if !wanted || self.failure.is_some() {
+        let is_elsewhere = |device: &GuideDevice| {
+            device.publishes() != window.is_some()
+                || window.as_ref().is_some_and(|gpu| !gpu.is_same_device(device.gpu()))
+        };
+        self.on_device = wanted && self.failure.is_none();
+        if !self.on_device || self.device.as_ref().is_some_and(is_elsewhere) {
+            self.complete(simulation);
             self.device = None;
-            return simulation.step(input, settings, secs);
         }
-        if self.device.is_none() {
-            self.device = self.open();
+        if self.on_device && self.device.is_none() {
+            self.device = self.open(window);
+            self.on_device = self.device.is_some();
         }
-        let Some(device) = &mut self.device else { return simulation.step(input, settings, secs) };
-        let (report, refusal) = simulation.step_on(device, input, settings, secs);
-        self.on_device = refusal.is_none();
-        if let Some(reason) = refusal {
-            let failure = if device.has_room() { Failure::Device } else { Failure::Size(size) };
-            self.fail(failure, &reason);
-        }
-        report
+        self.device.as_mut()
     }
 
-    /// A device without guides. On failure, the CPU goes on.
-    fn open(&mut self) -> Option<GuideDevice> {
+    /// A device without guides, that of the window if it is given. On failure, the CPU goes on.
+    fn open(&mut self, window: Option<Arc<Gpu>>) -> Option<GuideDevice> {
+        if let Some(gpu) = window {
+            let compiled = GuideKernels::new(&gpu);
+            let failed = compiled.inspect_err(|error| self.fail(Failure::Device(Some(gpu.number())), &error.to_string()));
+            return failed.ok().map(|kernels| GuideDevice::new(Arc::new(kernels)).publishing());
+        }
         self.kernels.take_if(|kernels| kernels.gpu().is_lost());
         if self.kernels.is_none() {
             match kernels(self.choice == Some(Backend::Auto)) {
                 Ok(Some(kernels)) => self.kernels = Some(kernels),
                 // Automatic chooses the CPU then, which is no failure to tell.
-                Ok(None) => self.failure = Some(Failure::Device),
-                Err(reason) => self.fail(Failure::Device, &reason),
+                Ok(None) => self.failure = Some(Failure::Device(None)),
+                Err(reason) => self.fail(Failure::Device(None), &reason),
             }
         }
         self.kernels.as_ref().map(|kernels| GuideDevice::new(Arc::clone(kernels)))
     }
 
+    /// Whether steps are drawn on the device of the window.
+    fn is_shared(&self) -> bool {
+        self.window.for_simulation().is_some()
+    }
+
+    /// Notes how the step of the device has ended.
+    fn done(&mut self, refusal: Option<&str>, simulation: &Simulation) {
+        self.on_device = refusal.is_none();
+        let (Some(reason), Some(device)) = (refusal, &self.device) else { return };
+        let guides = &simulation.style().guides;
+        let number = device.publishes().then(|| device.gpu().number());
+        let failure = if device.has_room() {
+            Failure::Device(number)
+        } else {
+            Failure::Size([guides.count(), guides.points_per_guide])
+        };
+        self.fail(failure, reason);
+    }
+
     fn fail(&mut self, failure: Failure, reason: &str) {
         let note = format!("{reason}; the CPU simulates the hair");
         tracing::warn!("{note}");
-        if failure == Failure::Device {
+        if matches!(failure, Failure::Device(_)) {
             self.kernels = None;
         }
         (self.device, self.failure, self.note) = (None, Some(failure), Some(note.into()));
@@ -137,8 +231,8 @@ fn shared() -> MutexGuard<'static, Shared> {
     SHARED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The shared kernels; `None` if a real graphics card is wanted (`real`) and there is none. They have a device beside that of the window,
-/// because a step is read back, and would wait behind the images in the window's queue.
+/// The shared kernels; `None` if a real graphics card is wanted (`real`) and there is none. They have a device beside that of the window:
+/// a step that is read back at once would wait behind the images in the window's queue.
 fn kernels(real: bool) -> Result<Option<Arc<GuideKernels>>, String> {
     let mut shared = shared();
     if real && shared.has_no_card {
@@ -284,7 +378,7 @@ mod tests {
         let size = [guides.count(), guides.points_per_guide];
         project.hair.groom.wisps = 12;
         let fewer = load(&project).0;
-        for (failure, is_forgotten) in [(Failure::Size(size), true), (Failure::Device, false)] {
+        for (failure, is_forgotten) in [(Failure::Size(size), true), (Failure::Device(None), false)] {
             let mut engine = settled.copy();
             engine.stepper.fail(failure, "for this test");
             for (scene, on_device) in [(scene(), false), (Arc::clone(&fewer), is_forgotten)] {

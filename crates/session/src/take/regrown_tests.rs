@@ -8,6 +8,7 @@ use lovelock_record::{MAX_ERROR_M, TakeFrame, TakeReader, TakeWriter};
 
 use super::TakePlayer;
 use super::tests::folder;
+use crate::window_device::WindowDevice;
 use crate::testing::{farthest, guides, played, recorded, regrown, small_project};
 
 #[test]
@@ -89,7 +90,7 @@ fn the_thread_records_other_guides_and_stops_without_hair() {
     use crate::worker::{Event, Worker};
     let (_folder, path) = folder();
     let mut project = small_project();
-    let worker = Worker::start(Arc::new(project.clone()), Access::new(), Arc::new(|| {})).expect("threads");
+    let worker = Worker::start(Arc::new(project.clone()), Access::new(), &WindowDevice::default(), Arc::new(|| {})).expect("threads");
     let frames = || worker.take_progress().map_or(0, |take| take.frames);
     wait_until("a scene", || worker.frame().is_some());
     worker.record_take(&path);

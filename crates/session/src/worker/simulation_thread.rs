@@ -29,6 +29,7 @@ use crate::engine::{Engine, LastSteps};
 use crate::scene::Scene;
 use crate::take::{TakeRecording, TakeTransport};
 use crate::threads::own_workers;
+use crate::window_device::WindowDevice;
 
 /// Number of consecutive panics after which the simulation stops until something changes.
 const MAX_PANICS: u32 = 3;
@@ -40,6 +41,7 @@ const AGAIN: Duration = Duration::from_millis(50);
 pub(super) struct SimulationThread {
     shared: Shared,
     outbox: Outbox,
+    window: WindowDevice,
     engine: Option<Engine>,
     /// The pre-roll that leads to the engine's instant. Playback waits for it.
     preroll: Option<PendingPreroll>,
@@ -66,10 +68,11 @@ pub(super) struct SimulationThread {
 }
 
 impl SimulationThread {
-    pub(super) fn new(shared: Shared, outbox: Outbox) -> Self {
+    pub(super) fn new(shared: Shared, outbox: Outbox, window: WindowDevice) -> Self {
         Self {
             shared,
             outbox,
+            window,
             engine: None,
             preroll: None,
             settling_pending: false,
@@ -109,6 +112,7 @@ impl SimulationThread {
             let requests = self.shared.mailbox.take(self.until_calm(timeout));
             if requests.stop {
                 // Closing the window must not lose the recording.
+                self.finish_begun_step();
                 self.end_take(None);
                 return;
             }
@@ -127,6 +131,7 @@ impl SimulationThread {
 
     /// Handles requests and elapsed time, and publishes the result.
     fn turn(&mut self, requests: Requests, elapsed_secs: f64) {
+        let finished = self.finish_begun_step();
         let changed = self.handle(requests);
         self.settle_when_calm();
         // Publish the progress before the frame, so that readers of the frame know that its hair is not settled.
@@ -142,7 +147,7 @@ impl SimulationThread {
         } else if self.preroll.is_some() {
             self.advance_preroll(changed);
         } else {
-            self.simulate(changed, elapsed_secs);
+            self.simulate(changed, finished, elapsed_secs);
         }
         self.shared.take_frames.set(self.take.as_ref().map_or(0, TakeTransport::cached_bytes));
         self.publish_settling();
@@ -336,6 +341,7 @@ impl SimulationThread {
             return;
         }
         let mut engine = Engine::at_rest(scene, self.settings, STEP_SECS);
+        engine.share(&self.window);
         if let Some(project) = &self.project {
             engine.follow(project);
         }
@@ -370,6 +376,7 @@ impl SimulationThread {
         if let (Some(scene), true) = (scene, self.panics < MAX_PANICS) {
             self.engine = catch_unwind(AssertUnwindSafe(|| Engine::new(scene, self.settings))).ok();
             if let (Some(engine), Some(project)) = (&mut self.engine, &self.project) {
+                engine.share(&self.window);
                 engine.follow(project);
             }
         }

@@ -21,7 +21,7 @@ fn start(project: lovelock_project::Project) -> (Worker, Arc<AtomicU64>) {
     let wake: Wake = Arc::new(move || {
         count.fetch_add(1, Ordering::Relaxed);
     });
-    (Worker::start(Arc::new(project), Access::new(), wake).expect("threads"), woken)
+    (Worker::start(Arc::new(project), Access::new(), &WindowDevice::default(), wake).expect("threads"), woken)
 }
 
 #[test]

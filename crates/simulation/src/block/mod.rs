@@ -282,4 +282,15 @@ impl Block {
         }
         self.velocity.copy_from_slice(&old.velocity);
     }
+
+    /// Computes what moves beside positions and velocities from the positions; see [`Block::copy_motion`].
+    pub(crate) fn rebuild(&mut self, from_head: &Map) {
+        let mut moved = self.clone();
+        moved.copy_motion(self, from_head);
+        self.bend = moved.bend;
+        self.contact_push.fill(ZERO3);
+        self.has_contact_push = false;
+        self.skin.fill(PlaneRow::NO_SKIN);
+        self.coupled.reset();
+    }
 }

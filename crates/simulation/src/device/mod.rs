@@ -2,8 +2,8 @@
 //!
 //! Only the guides are advanced elsewhere. The head, the colliders, the maps of the field, the wind and the ropes of
 //! a step are prepared here in either case, and after the step the state of the guides is in the
-//! [`Simulation`](crate::Simulation) again. A device that refuses a step changes nothing, and the CPU then does the
-//! whole step.
+//! [`Simulation`](crate::Simulation) again, or at least what moves: see [`Reads`]. A device that refuses a step changes nothing,
+//! and the CPU then does the whole step.
 //!
 //! Lists of rows hold one number per *slot*. A block has [`SLOTS`] slots, one per lane, and the number of point `i` of
 //! block `b` in slot `k` is at `(b * points + i) * SLOTS + k`. Vectors have three such numbers, axis by axis: that of
@@ -15,7 +15,8 @@ mod rows;
 
 pub use constants::{constants, grid_size};
 pub use frame::{FRAME_WAVES, FrameOffsets};
-pub use rows::STATE_ROWS;
+pub(crate) use rows::read_rest;
+pub use rows::{MOTION_ROWS, STATE_ROWS};
 
 pub use crate::contents::Stamp;
 pub(crate) use crate::contents::Stamps;
@@ -26,7 +27,7 @@ pub use crate::colliders::field::{FieldLattices, MovingField};
 use crate::dispatch::accept_block;
 use crate::grid::DensityGrid;
 use crate::lanes::LANES;
-use crate::solver::{FACTOR_CHECK_INTERVAL, Plan};
+use crate::solver::{Ending, FACTOR_CHECK_INTERVAL, Plan};
 use crate::{Integrator, RepulsionMode, SimulationSettings};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -35,18 +36,55 @@ use rayon::prelude::*;
 pub const SLOTS: usize = LANES;
 
 /// Advances guides by a step.
+///
+/// The errors say in a sentence why the device cannot do what is asked.
 pub trait StepDevice: Send {
-    /// Advances the guides by `step`.
+    /// Begins `step`, and copying what `reads` says to memory.
     ///
     /// # Errors
-    /// Why the device cannot do the step, in a sentence.
-    fn advance(&mut self, step: &DeviceStep) -> Result<&DeviceOutcome, String>;
+    /// The device does not take the step, and nothing has begun.
+    fn begin(&mut self, step: &DeviceStep, reads: Reads) -> Result<(), String>;
+
+    /// Waits for the step that was begun last.
+    ///
+    /// # Errors
+    /// The step is not done.
+    fn finish(&mut self) -> Result<&DeviceOutcome, String>;
+
+    /// Whether the device holds the state with this stamp.
+    fn holds(&self, state: Stamp) -> bool;
+
+    /// Reads the rows of [`DeviceStep::write_state`] at the end of the last step.
+    ///
+    /// # Errors
+    /// There is no such state, or it cannot be read.
+    fn read_state(&mut self) -> Result<&[f32], String>;
+}
+
+/// What is read back of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reads {
+    /// All [`STATE_ROWS`] of the state.
+    State,
+    /// Positions and velocities, the first [`MOTION_ROWS`]. The rest stays on the device, and is read when something else than this
+    /// device goes on with it.
+    Motion,
+}
+
+impl Reads {
+    /// Numbers per point and slot that are read.
+    pub fn rows(self) -> usize {
+        match self {
+            Self::State => STATE_ROWS,
+            Self::Motion => MOTION_ROWS,
+        }
+    }
 }
 
 /// What a device returns about a step.
 #[derive(Clone, Debug, Default)]
 pub struct DeviceOutcome {
-    /// The rows of [`DeviceStep::write_state`] at the end of the step.
+    /// The rows of [`DeviceStep::write_state`] at the end of the step: the first ones, as many as [`Reads::rows`].
     pub state: Vec<f32>,
     /// The contacts of each slot.
     pub contacts: Vec<SlotContact>,
@@ -79,6 +117,7 @@ pub struct DeviceStep<'a> {
     pub(crate) grid: &'a DensityGrid,
     pub(crate) stamps: Stamps,
     pub(crate) after: Stamp,
+    pub(crate) place: Vec3,
 }
 
 impl DeviceStep<'_> {
@@ -135,6 +174,19 @@ impl DeviceStep<'_> {
     /// Translation of positions from the last step to this one, metres.
     pub fn rebase(&self) -> Vec3 {
         self.plan.rebase
+    }
+
+    /// The place of the head at the end of the step, metres: positions in world space are those of the state and this.
+    pub fn place(&self) -> Vec3 {
+        self.place
+    }
+
+    /// Writes the number of the guide in each slot, [`u32::MAX`] in those of none.
+    pub fn write_guide_numbers(&self, out: &mut Vec<u32>) {
+        out.clear();
+        for block in self.blocks {
+            out.extend((0..SLOTS).map(|k| if k < block.used { block.guides[k] } else { u32::MAX }));
+        }
     }
 
     /// Fraction of the velocity relative to the surrounding hair that vanishes in a step.
@@ -216,15 +268,20 @@ impl std::fmt::Debug for DeviceStep<'_> {
     }
 }
 
-/// Writes the state and the contacts that a device returned into `blocks`, resets guides that are not finite, and
-/// measures all. Returns whether the state is that of the device.
+/// Writes the rows of `outcome`, as many as `reads` says, and the contacts that a device returned into `blocks`, resets guides that are not
+/// finite, and measures all. Returns whether the state is that of the device.
 ///
 /// # Errors
 /// The outcome has another size than the guides.
-pub(crate) fn accept(blocks: &mut [Block], plan: &Plan, outcome: &DeviceOutcome) -> Result<bool, String> {
+pub(crate) fn accept(
+    blocks: &mut [Block],
+    ending: &Ending,
+    outcome: &DeviceOutcome,
+    reads: Reads,
+) -> Result<bool, String> {
     let points = blocks.first().map_or(0, Block::points);
     let slots = blocks.len() * SLOTS;
-    let wanted = slots * points * rows::STATE_ROWS;
+    let wanted = slots * points * reads.rows();
     if outcome.state.len() != wanted || outcome.contacts.len() != slots {
         return Err(format!(
             "simulation on a device: found {} numbers and {} guides; must be {wanted} and {slots}",
@@ -234,7 +291,7 @@ pub(crate) fn accept(blocks: &mut [Block], plan: &Plan, outcome: &DeviceOutcome)
     }
     let count = blocks.len();
     blocks.par_iter_mut().enumerate().for_each(|(b, block)| {
-        accept_block(block, plan, |block| {
+        accept_block(block, ending, |block| {
             rows::read_state(block, b, count, &outcome.state);
             block.outcome = contacts(block, &outcome.contacts[b * SLOTS..][..SLOTS]);
         });

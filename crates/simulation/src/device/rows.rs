@@ -6,6 +6,10 @@ use crate::lanes::{Lane, Lane3};
 
 /// Numbers per point and slot of [`DeviceStep::write_state`].
 pub const STATE_ROWS: usize = 18;
+/// The first of them: positions and velocities.
+pub const MOTION_ROWS: usize = 6;
+/// Numbers per point and slot of a part of the state.
+const PART_ROWS: usize = 3;
 
 /// Appends rows of vectors.
 fn put3(out: &mut Vec<f32>, rows: &[Lane3]) {
@@ -27,17 +31,55 @@ fn parts(block: &Block) -> [&[Lane3]; 6] {
     [position, velocity, bend, contact_push, &coupled.directions, skin]
 }
 
-/// Reads the parts of block `b` of `count` from the rows of a state.
-pub(super) fn read_state(block: &mut Block, b: usize, count: usize, state: &[f32]) {
-    let size = block.points() * 3 * SLOTS;
+fn parts_mut(block: &mut Block) -> [&mut [Lane3]; 6] {
     let Block { position, velocity, bend, contact_push, coupled, skin, .. } = block;
-    let parts = [position, velocity, bend, contact_push, &mut coupled.directions, skin];
-    for (n, rows) in parts.into_iter().enumerate() {
-        let from = &state[(n * count + b) * size..][..size];
+    [position, velocity, bend, contact_push, &mut coupled.directions, skin]
+}
+
+/// The numbers of part `n` of block `b` of `count`, which has `points` points per guide.
+fn part_of(state: &[f32], n: usize, (b, count): (usize, usize), points: usize) -> &[f32] {
+    let size = points * PART_ROWS * SLOTS;
+    &state[(n * count + b) * size..][..size]
+}
+
+/// Reads the parts of block `b` of `count` that the rows of a state contain, which are the first ones.
+pub(super) fn read_state(block: &mut Block, b: usize, count: usize, state: &[f32]) {
+    let points = block.points();
+    let read = state.len() / (count * points * PART_ROWS * SLOTS).max(1);
+    for (n, rows) in parts_mut(block).into_iter().enumerate().take(read) {
+        let from = part_of(state, n, (b, count), points);
         for (axis, numbers) in rows.iter_mut().flatten().zip(from.chunks_exact(SLOTS)) {
             axis.copy_from_slice(numbers);
         }
     }
+    if PART_ROWS * read == STATE_ROWS {
+        settle(block);
+    }
+}
+
+/// Reads the parts behind positions and velocities, where the positions are those of the state: guides that were reset keep theirs.
+pub(crate) fn read_rest(block: &mut Block, b: usize, count: usize, state: &[f32]) {
+    let points = block.points();
+    let mut is_same = [true; SLOTS];
+    let there = part_of(state, 0, (b, count), points);
+    for (axis, numbers) in block.position.iter().flatten().zip(there.chunks_exact(SLOTS)) {
+        for (k, same) in is_same.iter_mut().enumerate() {
+            *same &= axis[k].to_bits() == numbers[k].to_bits();
+        }
+    }
+    for (n, rows) in parts_mut(block).into_iter().enumerate().skip(MOTION_ROWS / PART_ROWS) {
+        let from = part_of(state, n, (b, count), points);
+        for (axis, numbers) in rows.iter_mut().flatten().zip(from.chunks_exact(SLOTS)) {
+            for k in (0..SLOTS).filter(|k| is_same[*k]) {
+                axis[k] = numbers[k];
+            }
+        }
+    }
+    settle(block);
+}
+
+/// Brings up to date what follows from the state.
+fn settle(block: &mut Block) {
     block.coupled.invalidate_factor();
     block.has_contact_push = block.any_contact_push();
 }

@@ -178,13 +178,15 @@ impl Simulation {
     /// itself is none. `rest` contains the guides at rest, head space: those of the moved ones take the shape that belongs to their new
     /// places. The next [`Simulation::set_style`] leaves the moved guides where they are then.
     ///
-    /// Guides of another layout, and a guide with a point that is not finite, change nothing. While ties grow, rest shapes stay.
+    /// Guides of another layout, and a guide with a point that is not finite, change nothing. While ties grow, rest shapes stay. After a step
+    /// that was begun on a device, [`Simulation::complete`] comes first.
     pub fn move_guides(&mut self, frame: &GuideFrame, rest: &Guides, guides: &[usize]) {
         let (count, points) = (self.style.guides.count(), self.style.guides.points_per_guide);
         let fits = |guides: &Guides| guides.points_per_guide == points && guides.count() == count;
         if self.slots.len() != count || !fits(&frame.guides) || !fits(rest) {
             return;
         }
+        self.complete(None);
         self.moved.resize(count, false);
         self.stamps = Stamps::new();
         let mut touched = vec![false; self.blocks.len()];

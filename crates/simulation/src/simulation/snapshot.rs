@@ -64,6 +64,7 @@ impl Simulation {
     /// The state does not include settings, style and the body's field. Restore it with the same style, after
     /// a [`Simulation::reset`] on the same body.
     pub fn save(&self) -> Vec<u8> {
+        debug_assert!(!self.is_partial, "a device has the rest of the state");
         let mut out = Writer(Vec::with_capacity(self.blocks.len() * 5 * LANES * 3 * 4 * 32));
         out.0.extend_from_slice(&MAGIC);
         out.u32(VERSION);
@@ -221,7 +222,7 @@ impl Simulation {
         }
         next.measure_rest_distances();
         next.measure_field_distances();
-        next.stamps = Stamps::new();
+        (next.stamps, next.is_partial) = (Stamps::new(), false);
         *self = next;
         Ok(())
     }

@@ -14,7 +14,7 @@ mod substep;
 
 pub(crate) use forces::CONSTANTS as FORCE_CONSTANTS;
 pub(crate) use lock::CONSTANTS as LOCK_CONSTANTS;
-pub(crate) use plan::Plan;
+pub(crate) use plan::{Ending, Plan};
 pub(crate) use substep::{CONSTANTS as SUBSTEP_CONSTANTS, FACTOR_CHECK_INTERVAL};
 
 use crate::block::{Block, Outcome, stretch_of};
@@ -40,12 +40,12 @@ pub(crate) fn advance(block: &mut Block, plan: &Plan) {
             *skin = planes.rest;
         }
     }
-    measure(block, plan);
+    measure(block, &plan.ending());
 }
 
 /// Resets guides that are not finite and measures the others.
 #[inline(always)]
-pub(crate) fn measure(block: &mut Block, plan: &Plan) {
+pub(crate) fn measure(block: &mut Block, ending: &Ending) {
     let count = block.points();
     let mut size = ZERO;
     for i in 0..count {
@@ -57,7 +57,7 @@ pub(crate) fn measure(block: &mut Block, plan: &Plan) {
     for k in 0..LANES {
         // Hair further than 300 m from its head counts as lost.
         if size[k].is_nan() || size[k] > 1e5 * count as f32 {
-            restore(block, plan, k);
+            restore(block, ending, k);
             block.has_contact_push = block.any_contact_push();
             if k < block.used {
                 block.outcome.recovered += 1;
@@ -66,7 +66,7 @@ pub(crate) fn measure(block: &mut Block, plan: &Plan) {
         }
     }
     let (mut stretch, mut energy, mut fastest) = (ZERO, ZERO, ZERO);
-    for i in plan.first_free.max(1)..count {
+    for i in ending.first_free.max(1)..count {
         let (a, b) = (&block.position[i - 1], &block.position[i]);
         let (v, inv) = (&block.velocity[i], &block.rest.inv_length[i]);
         for k in 0..LANES {
@@ -87,11 +87,11 @@ pub(crate) fn measure(block: &mut Block, plan: &Plan) {
 /// Resets lane `k` to its pose at the beginning of the step, carried along with the head; to its rest pose
 /// where that pose was not finite either.
 #[cold]
-fn restore(block: &mut Block, plan: &Plan, k: usize) {
-    let last = plan.substeps.last();
+fn restore(block: &mut Block, ending: &Ending, k: usize) {
+    let last = ending.last.as_ref();
     let known = block.work.start_pose.iter().all(|row| at(row, k).is_finite());
     for i in 0..block.points() {
-        let was = plan.carry_all.apply(at(&block.work.start_pose[i], k));
+        let was = ending.carry_all.apply(at(&block.work.start_pose[i], k));
         let rest = at(&block.rest.position[i], k);
         let p = if known { was } else { last.map_or(rest, |s| s.head.apply(rest)) };
         put(&mut block.position[i], k, p);

@@ -48,3 +48,21 @@ pub(crate) struct Plan<'a> {
     pub(crate) wind: &'a WindField,
     pub(crate) wakes: &'a Wakes,
 }
+
+impl Plan<'_> {
+    /// What the end of the step needs of it.
+    pub(crate) fn ending(&self) -> Ending {
+        let Plan { first_free, rebase, carry_all, .. } = *self;
+        Ending { first_free, rebase, carry_all, last: self.substeps.last().copied() }
+    }
+}
+
+/// The part of a [`Plan`] with which the state after a step is measured, and guides that are not finite are reset.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ending {
+    pub(crate) first_free: usize,
+    pub(crate) rebase: Vec3,
+    pub(crate) carry_all: Map,
+    /// The head at the end of the step.
+    pub(crate) last: Option<Substep>,
+}

@@ -4,6 +4,7 @@
 mod common;
 
 mod agreement;
+mod ahead;
 mod contacts;
 mod failures;
 

@@ -9,8 +9,8 @@ use lovelock_satf::{ClusterHair, ClusterShading, RibGrid, SectorRef, layout};
 
 use super::constant::Largest;
 use super::kernels::{ClusterVariant, MAX_PIXELS_A_THREAD};
-use crate::clusters::{guides_of, to_lights};
-use crate::{FrameInput, HairPose, MAX_LIGHTS, PictureSettings};
+use crate::clusters::{pose_by_guides, to_lights};
+use crate::{FrameInput, MAX_LIGHTS, PictureSettings};
 
 /// Twin of `ClusterUniform` in clusters.wgsl.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -85,8 +85,7 @@ impl Frame {
 
     /// `input` with the ribs in place of the hairstyle.
     pub fn of_ribs<'a>(&'a self, input: &FrameInput<'a>) -> FrameInput<'a> {
-        let hair = guides_of(input).map_or(input.hair, HairPose::Guides);
-        FrameInput { style: &self.hair.ribs, hair, picture: &self.picture, ..*input }
+        FrameInput { style: &self.hair.ribs, hair: pose_by_guides(input), picture: &self.picture, ..*input }
     }
 }
 

@@ -9,14 +9,31 @@ mod tests;
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec4;
+use glam::{Affine3A, Mat4, Vec4};
 use lovelock_gpu::{Commands, Gpu, GpuError, GrowBuffer, Kernel, ShaderPart, ShaderSource, wgpu};
 use lovelock_groom::{GuideFrame, Hairstyle, WispCurve};
+
+use crate::ResidentGuides;
+use crate::resident::Before;
 
 const FRAMES: ShaderPart =
     ShaderPart { name: "crates/render/src/gpu/interpolate/frames.wgsl", text: include_str!("frames.wgsl") };
 const STRANDS: ShaderPart =
     ShaderPart { name: "crates/render/src/gpu/interpolate/strands.wgsl", text: include_str!("strands.wgsl") };
+
+const MIX: ShaderPart =
+    ShaderPart { name: "crates/render/src/gpu/interpolate/mix.wgsl", text: include_str!("mix.wgsl") };
+
+/// Twin of `Mix` in mix.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+struct Mix {
+    heads: [Mat4; 3],
+    t: f32,
+    points_per_guide: u32,
+    guide_points: u32,
+    unused: u32,
+}
 
 /// Twin of `Instant` in frames.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -53,7 +70,10 @@ struct CurvePoint([f32; 16]);
 
 /// The composed shaders with their labels.
 pub(in crate::gpu) fn shaders() -> Vec<(String, ShaderSource)> {
-    vec![("interpolate".to_owned(), ShaderSource::new(&[FRAMES, STRANDS]))]
+    vec![
+        ("interpolate".to_owned(), ShaderSource::new(&[FRAMES, STRANDS])),
+        ("mix guides".to_owned(), ShaderSource::new(&[MIX])),
+    ]
 }
 
 /// The kernels, and the data of the current hairstyle.
@@ -61,6 +81,7 @@ pub(in crate::gpu) fn shaders() -> Vec<(String, ShaderSource)> {
 pub(in crate::gpu) struct Interpolation {
     carry_frames: Kernel,
     place_points: Kernel,
+    mix_guides: Kernel,
     style: Option<Arc<Hairstyle>>,
     instant: wgpu::Buffer,
     guides: GrowBuffer<f32>,
@@ -83,6 +104,7 @@ impl Interpolation {
         Ok(Self {
             carry_frames: Kernel::new(gpu, "carry frames", &source, "carry_frames")?,
             place_points: Kernel::new(gpu, "place points", &source, "place_points")?,
+            mix_guides: Kernel::new(gpu, "mix guides", &ShaderSource::new(&[MIX]), "mix_guides")?,
             style: None,
             instant: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("instant of guides"),
@@ -101,7 +123,8 @@ impl Interpolation {
     }
 
     /// Encodes writing every strand point of `style` (world space, metres) into `points`: an `array<vec4f>` whose last components become
-    /// 0. Guides are written to the queue immediately, so there may be one frame per submission.
+    /// 0. Guides that `gpu` has are taken from there. Others are written to the queue immediately, so there may be one frame per
+    /// submission.
     ///
     /// Encodes nothing for a hairstyle without strands.
     ///
@@ -113,7 +136,7 @@ impl Interpolation {
         gpu: &Gpu,
         commands: &mut Commands,
         style: &Arc<Hairstyle>,
-        frame: &GuideFrame,
+        (frame, there): (&GuideFrame, Option<&ResidentGuides>),
         points: &wgpu::Buffer,
     ) -> Result<(), GpuError> {
         let count = style.strands.points();
@@ -131,11 +154,23 @@ impl Interpolation {
         }
 
         let guides = &frame.guides;
-        let bytes_of_axis = size_of_val(guides.x.as_slice()) as u64;
-        self.guides.reserve(gpu, 3 * guides.x.len());
-        for (offset, axis) in (0..).zip([&guides.x, &guides.y, &guides.z]) {
-            gpu.upload(self.guides.raw(), offset * bytes_of_axis, axis);
+        let there = there.filter(|there| there.is_on(gpu, guides.x.len()));
+        match there {
+            None => {
+                let bytes_of_axis = size_of_val(guides.x.as_slice()) as u64;
+                self.guides.reserve(gpu, 3 * guides.x.len());
+                for (offset, axis) in (0..).zip([&guides.x, &guides.y, &guides.z]) {
+                    gpu.upload(self.guides.raw(), offset * bytes_of_axis, axis);
+                }
+            }
+            Some(ResidentGuides { before: None, .. }) => {}
+            Some(ResidentGuides { now, before: Some(before) }) => {
+                self.guides.reserve(gpu, 3 * guides.x.len());
+                self.mix(gpu, commands, frame, (before, now.raw()));
+            }
         }
+        let of_step = there.filter(|there| there.before.is_none());
+        let guide_points = of_step.map_or(self.guides.raw(), |there| there.now.raw());
         let turn = frame.world_from_head.matrix3;
         let instant = Instant {
             turn: [turn.x_axis, turn.y_axis, turn.z_axis].map(|column| column.extend(0.0)),
@@ -149,7 +184,7 @@ impl Interpolation {
 
         let resources = [
             (0, self.instant.as_entire_binding()),
-            (1, self.guides.raw().as_entire_binding()),
+            (1, guide_points.as_entire_binding()),
             (2, self.wisps.raw().as_entire_binding()),
             (3, self.curves.raw().as_entire_binding()),
             (4, self.strands.raw().as_entire_binding()),
@@ -165,6 +200,29 @@ impl Interpolation {
             self.place_points.run(pass, &place, count as u64);
         });
         Ok(())
+    }
+
+    /// Encodes writing the guides between two steps.
+    fn mix(&self, gpu: &Gpu, commands: &mut Commands, frame: &GuideFrame, (before, now): (&Before, &wgpu::Buffer)) {
+        let [from, to] = before.heads;
+        let mix = Mix {
+            heads: [from, to, frame.world_from_head].map(rigid),
+            t: before.t,
+            points_per_guide: frame.guides.points_per_guide as u32,
+            guide_points: frame.guides.x.len() as u32,
+            unused: 0,
+        };
+        let uniform = commands.constants("mix", &mix);
+        let resources = [
+            (0, uniform.as_entire_binding()),
+            (1, before.guides.raw().as_entire_binding()),
+            (2, now.as_entire_binding()),
+            (3, self.guides.raw().as_entire_binding()),
+        ];
+        let bound = self.mix_guides.bind(gpu, &resources);
+        commands.compute("interpolate", |pass| {
+            self.mix_guides.run(pass, &bound, frame.guides.count() as u64);
+        });
     }
 
     /// GPU memory in use, bytes.
@@ -224,6 +282,12 @@ impl Interpolation {
         self.style = Some(Arc::clone(style));
         Ok(())
     }
+}
+
+/// A transform of the head without scale.
+fn rigid(head: Affine3A) -> Mat4 {
+    let turn = glam::Quat::from_mat3a(&head.matrix3).normalize();
+    Mat4::from_rotation_translation(turn, head.translation.into())
 }
 
 /// The guides of a wisp and its frame at the root, in the rest pose.

@@ -4,13 +4,14 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_base::clock::Stopwatch;
-use lovelock_gpu::{Gpu, GpuError, GrowBuffer, PassTimer, check_shader, read_buffer, wgpu};
+use lovelock_gpu::{BufferPool, Gpu, GpuError, GrowBuffer, PassTimer, PooledBuffer, check_shader, read_buffer, wgpu};
 use lovelock_groom::{
     GroomSettings, GuideFrame, Guides, Hairstyle, ImportSettings, PlainHead, Preset, StrandSet, Strands,
     Wisp, grow, import, interpolate, load_hair,
 };
 
 use super::{Interpolation, shaders};
+use crate::ResidentGuides;
 
 fn device() -> Option<&'static Arc<Gpu>> {
     static DEVICE: OnceLock<Option<Arc<Gpu>>> = OnceLock::new();
@@ -41,6 +42,15 @@ impl Bench {
 
     /// The points from the device.
     fn run(&mut self, style: &Arc<Hairstyle>, frame: &GuideFrame) -> Result<Vec<[f32; 4]>, GpuError> {
+        self.run_with(style, (frame, None))
+    }
+
+    /// The same with guides that may be on the device.
+    fn run_with(
+        &mut self,
+        style: &Arc<Hairstyle>,
+        frame: (&GuideFrame, Option<&ResidentGuides>),
+    ) -> Result<Vec<[f32; 4]>, GpuError> {
         self.points.reserve(self.gpu, style.strands.points());
         let mut commands = self.timer.begin(self.gpu, "test");
         let encoded = self.interpolation.run(self.gpu, &mut commands, style, frame, self.points.raw());
@@ -175,6 +185,53 @@ fn a_guide_that_moved_a_tenth_of_a_millimetre_is_found() {
     assert!(missed > 10.0 * TOLERANCE, "only {missed} m");
 }
 
+/// The guides of `frame` in a buffer of the device.
+fn resident(gpu: &Arc<Gpu>, pool: &mut BufferPool, frame: &GuideFrame) -> PooledBuffer {
+    let Guides { x, y, z, .. } = &frame.guides;
+    let all = [&x[..], y, z].concat();
+    let held = pool.take(gpu, size_of_val(&all[..]) as u64);
+    gpu.upload(held.raw(), 0, &all);
+    held
+}
+
+#[test]
+fn guides_on_the_device_are_those_that_are_uploaded() {
+    let Some(gpu) = device() else { return };
+    let mut bench = Bench::new(gpu);
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+    let mut pool = BufferPool::new("test", usage);
+    let style = preset(Preset::Smooth);
+    let mut random = Random(11);
+    let [before, now] = [(); 2].map(|()| frame(&style, &mut random, true));
+    let [from, to] = [&before, &now].map(|frame| resident(gpu, &mut pool, frame));
+    let uploaded = bench.run(&style, &now).expect("it runs");
+    // Other guides in memory: they are not used but for the head.
+    let mut elsewhere = before.clone();
+    elsewhere.world_from_head = now.world_from_head;
+    let whole = ResidentGuides::of_step(to.clone());
+    assert_eq!(bench.run_with(&style, (&elsewhere, Some(&whole))).expect("it runs"), uploaded);
+    assert_ne!(bench.run(&style, &elsewhere).expect("it runs"), uploaded, "control: what is in memory differs");
+
+    let heads = [before.world_from_head, now.world_from_head];
+    for (t, end) in [(0.0, &before), (1.0, &now)] {
+        let mixed = ResidentGuides::between([(&from, heads[0]), (&to, heads[1])], t);
+        let found = bench.run_with(&style, (end, Some(&mixed))).expect("it runs");
+        let apart = largest_distance(&style, end, &found);
+        assert!(apart < TOLERANCE, "{t}: {apart} m");
+    }
+    // Hair that moves with the head keeps its shape between two steps.
+    let rest = |head| GuideFrame::at_rest(&style.guides, head, 0.0);
+    let middle = rest(Affine3A::from_rotation_translation(Quat::from_rotation_y(0.3), Vec3::new(0.1, 1.4, 0.2)));
+    let ends = heads.map(rest).map(|frame| resident(gpu, &mut pool, &frame));
+    let mixed = ResidentGuides::between([(&ends[0], heads[0]), (&ends[1], heads[1])], 0.3);
+    let found = bench.run_with(&style, (&middle, Some(&mixed))).expect("it runs");
+    let apart = largest_distance(&style, &middle, &found);
+    assert!(apart < TOLERANCE, "{apart} m");
+    // Held buffers keep their content.
+    let _other = resident(gpu, &mut pool, &before);
+    assert_eq!(bench.run_with(&style, (&now, Some(&whole))).expect("it runs"), uploaded);
+}
+
 /// Three guides in a row, a wisp of them and one without strands, and a strand with points along the guides and beyond them.
 fn small(guide: &[Vec3]) -> Hairstyle {
     let mut guides = Guides { points_per_guide: guide.len(), ..Guides::default() };
@@ -287,6 +344,6 @@ fn what_does_not_fit_is_refused_with_words() {
     // A buffer too small for the points.
     let little = GrowBuffer::<[f32; 4]>::new(gpu, "little", wgpu::BufferUsages::STORAGE);
     let mut commands = bench.timer.begin(gpu, "test");
-    let encoded = bench.interpolation.run(gpu, &mut commands, &style, &rest, little.raw());
+    let encoded = bench.interpolation.run(gpu, &mut commands, &style, (&rest, None), little.raw());
     assert!(encoded.expect_err("too small").to_string().contains("bytes; they need"));
 }

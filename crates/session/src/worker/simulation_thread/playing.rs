@@ -2,6 +2,7 @@
 
 use super::super::Event;
 use super::SimulationThread;
+use crate::engine::Engine;
 
 impl SimulationThread {
     pub(super) fn step(&mut self) {
@@ -17,6 +18,30 @@ impl SimulationThread {
                 engine.step();
             }
             self.record_step();
+        }
+    }
+
+    /// Waits for a step that was begun in the last turn, which the device has usually done by now. Returns whether there was one.
+    pub(super) fn finish_begun_step(&mut self) -> bool {
+        let finished = self.engine.as_mut().is_some_and(Engine::finish_step);
+        if finished {
+            self.record_step();
+        }
+        finished
+    }
+
+    /// Shows the hair as it is and begins the next step, which a device does meanwhile. Images are a step behind then.
+    fn go_ahead(&mut self, between: Option<f64>) {
+        let Some(engine) = &mut self.engine else { return };
+        match between {
+            Some(t) => {
+                self.last_steps.follow(engine);
+                self.show_between(t);
+            }
+            None => self.show(),
+        }
+        if let Some(engine) = &mut self.engine {
+            engine.begin_step();
         }
     }
 
@@ -63,14 +88,17 @@ impl SimulationThread {
         }
     }
 
-    pub(super) fn simulate(&mut self, mut changed: bool, elapsed_secs: f64) {
+    /// Advances the hair. `finished` says that a step that was begun before is done.
+    pub(super) fn simulate(&mut self, mut changed: bool, finished: bool, elapsed_secs: f64) {
         if changed {
             // After a seek or a change of style, the previous step does not lead to the current one.
             self.last_steps.forget();
             self.playback.begin();
         }
         let due = self.playback.advance(elapsed_secs);
-        for _ in 0..due.steps {
+        // It is shown at once, unless images lie between steps.
+        changed |= finished && !self.playback.shows_between();
+        for left in (0..due.steps).rev() {
             let Some(engine) = &self.engine else { return };
             if engine.is_at_end() {
                 self.playback.set_playing(false);
@@ -78,6 +106,10 @@ impl SimulationThread {
                 self.outbox.send(Event::EndReached);
                 changed = true;
                 break;
+            }
+            if left == 0 && !self.still && engine.goes_ahead() {
+                self.go_ahead(due.between);
+                return;
             }
             self.step();
             changed |= due.between.is_none();

@@ -17,6 +17,7 @@ use crate::latest::Latest;
 use crate::scene::SceneLoader;
 use crate::snapshot::FrameSnapshot;
 use crate::testing::load;
+use crate::window_device::WindowDevice;
 
 /// As [`crate::testing::small_project`], with the pre-roll of an engine that follows no project.
 fn small_project() -> Project {
@@ -35,11 +36,16 @@ struct Driven {
 impl Driven {
     /// A scene with settled hair at the first frame, which is shown.
     fn new(project: &Project, scene: &Arc<Scene>) -> Self {
+        Self::on(WindowDevice::default(), project, scene)
+    }
+
+    /// The same beside the device of a window.
+    fn on(window: WindowDevice, project: &Project, scene: &Arc<Scene>) -> Self {
         let (outbox, _) = Outbox::new(Arc::new(|| ()));
         let loader = Arc::new(LoadThread::start(outbox.clone(), |_| ()).expect("a thread"));
         let shared = Shared::new(Mailbox::default(), loader);
         let frames = shared.frames.clone();
-        let inside = SimulationThread::new(shared, outbox);
+        let inside = SimulationThread::new(shared, outbox, window);
         let mut driven = Self { inside, frames, seen: 0 };
         driven.put(project, scene);
         driven
