@@ -59,6 +59,6 @@ pub use lovelock_shadow::{
     TexelFilter, UserMethod, VoxelMarchSettings, fallbacks_sentence, new_method,
 };
 pub use picture::Picture;
-pub use resident::ResidentGuides;
 pub use renderer::Renderer;
+pub use resident::ResidentGuides;
 pub use standing::light_frame;

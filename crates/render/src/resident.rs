@@ -30,10 +30,7 @@ impl ResidentGuides {
 
     /// The guides at the fraction `t` (0 to 1) from one step to the next, mixed on the device as on the CPU. Each step has its guides and
     /// the transform of the head, and both have the same layout.
-    pub fn between(
-        [(before, from), (now, to)]: [(&PooledBuffer, Affine3A); 2],
-        t: f32,
-    ) -> Self {
+    pub fn between([(before, from), (now, to)]: [(&PooledBuffer, Affine3A); 2], t: f32) -> Self {
         let before = Before { guides: before.clone(), heads: [from, to], t };
         Self { now: now.clone(), before: Some(before) }
     }

@@ -113,7 +113,8 @@ impl Threads {
         };
         let project = Arc::new(project.clone());
         let painter = RenderThread::start(WindowDevice::default(), wake.clone())?;
-        let worker = Worker::start(Arc::clone(&project), Access::new(), &WindowDevice::default(), Arc::new(wake))?;
+        let worker =
+            Worker::start(Arc::clone(&project), Access::new(), &WindowDevice::default(), Arc::new(wake))?;
         let mut threads = Self {
             worker,
             painter,

@@ -12,6 +12,8 @@ mod styled;
 pub use brushing::BrushLayers;
 pub use preroll::{Preroll, PrerollProgress};
 pub(crate) use shown::LastSteps;
+#[cfg(test)]
+pub(crate) use stepper::kernels_for_tests;
 
 use std::sync::Arc;
 
@@ -62,8 +64,6 @@ pub struct Engine {
     step_secs: f64,
     simulation: Simulation,
     stepper: Stepper,
-    /// Whether a graphics device has begun a step that is not finished.
-    unfinished: bool,
     /// The transition of strands to other ties, while it lasts.
     combing: Option<Combing>,
     /// Current step, counted from the scene's time zero.
@@ -123,7 +123,6 @@ impl Engine {
             step_secs,
             simulation,
             stepper: Stepper::default(),
-            unfinished: false,
             combing: None,
             at_step: 0,
             taken: 0,
@@ -306,8 +305,8 @@ impl Engine {
         self.advance(false);
     }
 
-    /// Advances by one step, or only begins it if it may go ahead. Returns whether it is done.
-    fn advance(&mut self, ahead: bool) -> bool {
+    /// Advances by one step, or only begins it if it may go `ahead`.
+    fn advance(&mut self, ahead: bool) {
         self.cut = std::mem::take(&mut self.jumped_since);
         let before = self.scene.repetition(self.time_secs());
         self.at_step += 1;
@@ -323,7 +322,6 @@ impl Engine {
         if done {
             self.end_step();
         }
-        done
     }
 
     /// Counts a step that is done.

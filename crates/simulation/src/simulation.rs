@@ -356,7 +356,8 @@ impl Simulation {
                 return None;
             }
             let done = started.and_then(|()| device.finish());
-            match done.and_then(|out| Ok((device::accept(&mut self.blocks, &begun.ending, out, reads)?, out))) {
+            match done.and_then(|out| Ok((device::accept(&mut self.blocks, &begun.ending, out, reads)?, out)))
+            {
                 Ok((is_whole, out)) => {
                     let measured = Measured::of(out);
                     if !is_whole {

@@ -21,16 +21,14 @@ impl Engine {
     /// Begins a step. It is done at once if no device does it.
     pub(crate) fn begin_step(&mut self) {
         self.finish_step();
-        self.unfinished = !self.advance(true);
+        self.advance(true);
     }
 
     /// Waits for the step that was begun. Returns whether there was one.
     pub(crate) fn finish_step(&mut self) -> bool {
-        if !std::mem::take(&mut self.unfinished) {
-            return false;
-        }
         let watch = Stopwatch::start();
-        self.report = self.stepper.finish(&mut self.simulation).unwrap_or(self.report);
+        let Some(report) = self.stepper.finish(&mut self.simulation) else { return false };
+        self.report = report;
         self.times.simulate += watch.ms();
         self.end_step();
         true

@@ -174,7 +174,8 @@ impl Stepper {
     fn open(&mut self, window: Option<Arc<Gpu>>) -> Option<GuideDevice> {
         if let Some(gpu) = window {
             let compiled = GuideKernels::new(&gpu);
-            let failed = compiled.inspect_err(|error| self.fail(Failure::Device(Some(gpu.number())), &error.to_string()));
+            let failed = compiled
+                .inspect_err(|error| self.fail(Failure::Device(Some(gpu.number())), &error.to_string()));
             return failed.ok().map(|kernels| GuideDevice::new(Arc::new(kernels)).publishing());
         }
         self.kernels.take_if(|kernels| kernels.gpu().is_lost());
@@ -260,14 +261,22 @@ fn kernels(real: bool) -> Result<Option<Arc<GuideKernels>>, String> {
     Ok(Some(kernels))
 }
 
+/// The kernels for all tests of the crate, which are compiled once; `None` without an adapter, which is said.
+#[cfg(test)]
+pub(crate) fn kernels_for_tests() -> Option<&'static Arc<GuideKernels>> {
+    static KERNELS: std::sync::OnceLock<Option<Arc<GuideKernels>>> = std::sync::OnceLock::new();
+    let open =
+        || kernels(false).inspect_err(|error| lovelock_testkit::skip_without_adapter(error)).ok().flatten();
+    KERNELS.get_or_init(open).as_ref()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::testing::{farthest, load, scene, settled, small_project};
 
-    /// Whether there is an adapter; says so if not.
     fn has_adapter() -> bool {
-        Gpu::open().inspect_err(|error| lovelock_testkit::skip_without_adapter(error)).is_ok()
+        kernels_for_tests().is_some()
     }
 
     #[test]
@@ -314,10 +323,11 @@ mod tests {
 
     #[test]
     fn a_lost_device_leaves_a_sentence_and_the_motion_goes_on() {
-        let Some(gpu) = Gpu::open().inspect_err(|error| lovelock_testkit::skip_without_adapter(error)).ok()
-        else {
+        // The driver compiles the kernels of the other tests first, and knows them then.
+        if !has_adapter() {
             return;
-        };
+        }
+        let gpu = Gpu::open().expect("there is an adapter");
         let mut project = small_project();
         project.timeline.preroll_secs = 0.1;
         project.picture.simulate = Backend::Gpu;

@@ -8,8 +8,8 @@ use lovelock_record::{MAX_ERROR_M, TakeFrame, TakeReader, TakeWriter};
 
 use super::TakePlayer;
 use super::tests::folder;
-use crate::window_device::WindowDevice;
 use crate::testing::{farthest, guides, played, recorded, regrown, small_project};
+use crate::window_device::WindowDevice;
 
 #[test]
 fn hair_with_other_guides_is_recorded_on_and_plays_in_any_order() {
@@ -90,7 +90,9 @@ fn the_thread_records_other_guides_and_stops_without_hair() {
     use crate::worker::{Event, Worker};
     let (_folder, path) = folder();
     let mut project = small_project();
-    let worker = Worker::start(Arc::new(project.clone()), Access::new(), &WindowDevice::default(), Arc::new(|| {})).expect("threads");
+    let worker =
+        Worker::start(Arc::new(project.clone()), Access::new(), &WindowDevice::default(), Arc::new(|| {}))
+            .expect("threads");
     let frames = || worker.take_progress().map_or(0, |take| take.frames);
     wait_until("a scene", || worker.frame().is_some());
     worker.record_take(&path);

@@ -203,7 +203,13 @@ impl Interpolation {
     }
 
     /// Encodes writing the guides between two steps.
-    fn mix(&self, gpu: &Gpu, commands: &mut Commands, frame: &GuideFrame, (before, now): (&Before, &wgpu::Buffer)) {
+    fn mix(
+        &self,
+        gpu: &Gpu,
+        commands: &mut Commands,
+        frame: &GuideFrame,
+        (before, now): (&Before, &wgpu::Buffer),
+    ) {
         let [from, to] = before.heads;
         let mix = Mix {
             heads: [from, to, frame.world_from_head].map(rigid),

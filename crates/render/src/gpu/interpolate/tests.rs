@@ -4,7 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_base::clock::Stopwatch;
-use lovelock_gpu::{BufferPool, Gpu, GpuError, GrowBuffer, PassTimer, PooledBuffer, check_shader, read_buffer, wgpu};
+use lovelock_gpu::{
+    BufferPool, Gpu, GpuError, GrowBuffer, PassTimer, PooledBuffer, check_shader, read_buffer, wgpu,
+};
 use lovelock_groom::{
     GroomSettings, GuideFrame, Guides, Hairstyle, ImportSettings, PlainHead, Preset, StrandSet, Strands,
     Wisp, grow, import, interpolate, load_hair,
@@ -210,7 +212,11 @@ fn guides_on_the_device_are_those_that_are_uploaded() {
     elsewhere.world_from_head = now.world_from_head;
     let whole = ResidentGuides::of_step(to.clone());
     assert_eq!(bench.run_with(&style, (&elsewhere, Some(&whole))).expect("it runs"), uploaded);
-    assert_ne!(bench.run(&style, &elsewhere).expect("it runs"), uploaded, "control: what is in memory differs");
+    assert_ne!(
+        bench.run(&style, &elsewhere).expect("it runs"),
+        uploaded,
+        "control: what is in memory differs"
+    );
 
     let heads = [before.world_from_head, now.world_from_head];
     for (t, end) in [(0.0, &before), (1.0, &now)] {
@@ -221,7 +227,8 @@ fn guides_on_the_device_are_those_that_are_uploaded() {
     }
     // Hair that moves with the head keeps its shape between two steps.
     let rest = |head| GuideFrame::at_rest(&style.guides, head, 0.0);
-    let middle = rest(Affine3A::from_rotation_translation(Quat::from_rotation_y(0.3), Vec3::new(0.1, 1.4, 0.2)));
+    let middle =
+        rest(Affine3A::from_rotation_translation(Quat::from_rotation_y(0.3), Vec3::new(0.1, 1.4, 0.2)));
     let ends = heads.map(rest).map(|frame| resident(gpu, &mut pool, &frame));
     let mixed = ResidentGuides::between([(&ends[0], heads[0]), (&ends[1], heads[1])], 0.3);
     let found = bench.run_with(&style, (&middle, Some(&mixed))).expect("it runs");

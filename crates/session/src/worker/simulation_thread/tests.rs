@@ -6,13 +6,14 @@ use glam::Vec3;
 use lovelock_motion::{Pose, pose_at};
 use lovelock_project::Project;
 use lovelock_project::files::Access;
+use lovelock_render::{Backend, GpuRenderer, Picture, ShadowMethod};
 
 use super::super::load_thread::{LoadThread, Loaded};
 use super::super::mailbox::{Mailbox, Requests};
 use super::super::{Outbox, Shared};
 use super::{Scene, SimulationThread};
 use crate::clock::STEP_SECS;
-use crate::engine::Engine;
+use crate::engine::{Engine, kernels_for_tests};
 use crate::latest::Latest;
 use crate::scene::SceneLoader;
 use crate::snapshot::FrameSnapshot;
@@ -356,4 +357,83 @@ fn the_simulation_waits_while_a_take_is_opened() {
         driven.turn(Requests::default(), 2.0 * STEP_SECS);
     }
     assert_ne!(driven.hash(), before);
+}
+
+/// The image of a frame by a renderer on the device of the window, with its guides from there or from memory.
+fn drawn(renderer: &mut GpuRenderer, frame: &FrameSnapshot, project: &Project, from_device: bool) -> Vec<u8> {
+    let mut frame = frame.clone();
+    frame.resident = frame.resident.filter(|_| from_device);
+    let (camera, mut picture) = (frame.camera(&project.camera), Picture::default());
+    let input = frame.measured_input(project, &camera);
+    renderer.picture(&input, 96, 96, &mut picture).expect("a picture");
+    picture.rgba
+}
+
+/// The share of bytes that differ by more than one step.
+fn share_apart(a: &[u8], b: &[u8]) -> f64 {
+    let apart = a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+    apart as f64 / a.len() as f64
+}
+
+#[test]
+fn hair_that_the_device_of_the_window_simulates_is_drawn_from_there() {
+    let Some(kernels) = kernels_for_tests() else { return };
+    let gpu = kernels.gpu();
+    let mut project = small_project();
+    project.picture.simulate = Backend::Gpu;
+    project.shadow.method = ShadowMethod::None;
+    let scene = load(&project).0;
+    let mut twin = Engine::new(Arc::clone(&scene), project.simulation);
+    twin.follow(&project);
+    let mut driven = Driven::on(WindowDevice::simulating(Arc::clone(gpu)), &project, &scene);
+    driven.turn(
+        Requests { project: Some((Arc::new(project.clone()), Access::new())), ..Requests::default() },
+        0.0,
+    );
+    let same = |frame: &FrameSnapshot, twin: &mut Engine| {
+        while twin.time_secs() + 1e-9 < frame.time_secs {
+            twin.step();
+        }
+        assert_eq!(frame.guides, twin.snapshot().guides, "at {} s", frame.time_secs);
+        assert!(frame.on_device && frame.resident.is_some(), "at {} s", frame.time_secs);
+    };
+    for _ in 0..5 {
+        same(&driven.picture(), &mut twin);
+    }
+    assert!(twin.time_secs() > 3.5 * STEP_SECS, "images are a step behind at most");
+    assert!(twin.snapshot().resident.is_none(), "control: a device beside that of the window");
+    // Between steps, the device mixes them as the CPU does.
+    driven.turn(slow(0.4), 0.0);
+    let shown: Vec<_> = (0..6).map(|_| driven.picture()).collect();
+    for pair in shown.windows(2) {
+        assert!((pair[1].time_secs - pair[0].time_secs - 0.4 * STEP_SECS).abs() < 1e-6, "even steps");
+    }
+    let mut renderer = GpuRenderer::new(gpu).expect("a renderer");
+    let frame = &shown[4];
+    let [there, here] = [true, false].map(|from_device| drawn(&mut renderer, frame, &project, from_device));
+    let mut other = FrameSnapshot::clone(frame);
+    other.resident.clone_from(&shown[0].resident);
+    let control = share_apart(&drawn(&mut renderer, &other, &project, true), &here);
+    let apart = share_apart(&there, &here);
+    println!("{apart} of the bytes differ, {control} with the guides of another instant");
+    assert!(apart < 1e-3 && control > 5.0 * apart.max(1e-3), "{apart}, {control}");
+    // A pause shows the step that was begun.
+    driven.turn(Requests { playing: Some(false), rate: Some(1.0), ..Requests::default() }, 0.0);
+    same(&driven.frames.latest().expect("a picture"), &mut twin);
+    assert_eq!(driven.hash(), twin.state_hash());
+    // A change of the host goes on from the whole state.
+    project.picture.simulate = Backend::Cpu;
+    twin.follow(&project);
+    driven.turn(
+        Requests {
+            project: Some((Arc::new(project.clone()), Access::new())),
+            steps: 1,
+            ..Requests::default()
+        },
+        0.0,
+    );
+    twin.step();
+    let frame = driven.frames.latest().expect("a picture");
+    assert!(!frame.on_device && frame.resident.is_none());
+    assert_eq!(frame.guides, twin.snapshot().guides);
 }
