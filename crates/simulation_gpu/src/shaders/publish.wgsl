@@ -36,8 +36,8 @@ fn publish(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
     }
     let to = guide * publish_of.points + row % publish_of.points;
     let n = publish_of.guide_points;
-    let from = row * (3u * LANES) + lane;
-    guides[to] = moved[from] + publish_of.place.x;
-    guides[n + to] = moved[from + LANES] + publish_of.place.y;
-    guides[2u * n + to] = moved[from + 2u * LANES] + publish_of.place.z;
+    let source = row * (3u * LANES) + lane;
+    guides[to] = moved[source] + publish_of.place.x;
+    guides[n + to] = moved[source + LANES] + publish_of.place.y;
+    guides[2u * n + to] = moved[source + 2u * LANES] + publish_of.place.z;
 }

@@ -11,8 +11,8 @@ use lovelock_simulation_gpu::{GuideDevice, GuideKernels};
 use crate::common::{STEP_SECS, Stage, straight, style};
 use crate::{apart, device, points, step_on};
 
-fn secs(step: u32) -> Option<f64> {
-    Some(f64::from(step) * f64::from(STEP_SECS))
+fn secs(step: u32) -> f64 {
+    f64::from(step) * f64::from(STEP_SECS)
 }
 
 /// A step that is begun and then finished.
@@ -48,7 +48,7 @@ fn steps_that_are_begun_are_those_that_are_waited_for() {
     let mut other = other.publishing();
     assert_eq!(published(&other, &begun), None, "there was no step");
     for step in 1..=8 {
-        let input = stage.at(secs(step));
+        let input = stage.at(Some(secs(step)));
         let report = step_on(&mut device, &mut waited, &input, &settings, STEP_SECS);
         assert_eq!(ahead(&mut other, &mut begun, &input), report, "step {step}");
         assert_eq!(waited.state_hash(), begun.state_hash(), "step {step}");
@@ -58,7 +58,7 @@ fn steps_that_are_begun_are_those_that_are_waited_for() {
     // What the device has kept is read, and the CPU goes on from it.
     let mut lacking = begun.clone();
     begun.complete(Some(&mut other));
-    let input = stage.at(secs(9));
+    let input = stage.at(Some(secs(9)));
     assert_eq!(waited.step(&input, &settings, STEP_SECS), begun.step(&input, &settings, STEP_SECS));
     assert_eq!(waited.state_hash(), begun.state_hash());
     assert_eq!(published(&other, &begun), None, "the CPU has moved the hair");
@@ -77,7 +77,7 @@ fn what_is_not_the_next_step_needs_the_whole_state() {
     let settings = SimulationSettings::default();
     let (mut waited, mut begun) = (stage.simulation(Some(0.0)), stage.simulation(Some(0.0)));
     for step in 1..=4 {
-        let input = stage.at(secs(step));
+        let input = stage.at(Some(secs(step)));
         step_on(&mut device, &mut waited, &input, &settings, STEP_SECS);
         ahead(&mut other, &mut begun, &input);
     }
@@ -124,10 +124,10 @@ fn a_device_that_is_lost_during_a_step_leaves_the_hair_on_the_head() {
     let settings = SimulationSettings::default();
     let mut simulation = stage.simulation(Some(0.0));
     for step in 1..4 {
-        ahead(&mut device, &mut simulation, &stage.at(secs(step)));
+        ahead(&mut device, &mut simulation, &stage.at(Some(secs(step))));
     }
     let before = points(&simulation);
-    assert!(simulation.begin_on(&mut device, &stage.at(secs(4)), &settings, STEP_SECS).is_none());
+    assert!(simulation.begin_on(&mut device, &stage.at(Some(secs(4))), &settings, STEP_SECS).is_none());
     gpu.device.destroy();
     let refusal = simulation.finish(&mut device).expect("a step was begun").1;
     // A driver may have done the step before the device was lost.
@@ -139,7 +139,7 @@ fn a_device_that_is_lost_during_a_step_leaves_the_hair_on_the_head() {
     let moved = before.iter().zip(&after).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
     assert!(moved > 0.0 && moved < 0.1, "{moved} m in a step");
     // It goes on without the device.
-    let report = simulation.step(&stage.at(secs(5)), &settings, STEP_SECS);
+    let report = simulation.step(&stage.at(Some(secs(5))), &settings, STEP_SECS);
     assert!(report.recovered_guides == 0 && report.max_stretch < 1e-5, "{report:?}");
 }
 
@@ -151,7 +151,7 @@ fn guides_that_are_reset_do_not_disturb_the_others() {
         (0..20).map(|g| straight(Vec3::X * (0.01 * g as f32), Vec3::NEG_Y, 12, 0.2)).collect();
     guides[7][5] = Vec3::NAN;
     let style = style(&guides);
-    let still = |step: u32| StepInput::new(secs(step).unwrap_or_default(), Affine3A::IDENTITY, &[]);
+    let still = |step: u32| StepInput::new(secs(step), Affine3A::IDENTITY, &[]);
     let mut simulation = Simulation::new(style);
     simulation.reset(&still(0));
     let mut waited = simulation.clone();
