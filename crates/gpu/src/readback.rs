@@ -62,7 +62,7 @@ impl Readback {
         };
         arrived(gpu, &arrives)?;
         {
-            let bytes = buffer.get_mapped_range(..).map_err(|error| GpuError::Readback(error.to_string()))?;
+            let bytes = buffer.get_mapped_range(..).map_err(|error| failed(gpu, error.to_string()))?;
             let mut rest = &bytes[..];
             for (into, &part) in into.iter_mut().zip(&self.parts) {
                 let (here, after) = rest.split_at(part as usize);
@@ -160,14 +160,19 @@ fn ask(buffer: &wgpu::Buffer) -> Arrival {
 
 /// Waits for a mapping, if the device has not finished already.
 fn arrived(gpu: &Gpu, arrives: &Arrival) -> Result<(), GpuError> {
-    // An earlier error of the device explains the failure better than the failure itself.
-    let failed = |reason: String| gpu.check().err().unwrap_or(GpuError::Readback(reason));
     let _ = gpu.device.poll(wgpu::PollType::Poll);
     let result = if let Ok(result) = arrives.try_recv() {
         result
     } else {
         gpu.wait()?;
-        arrives.recv().map_err(|error| failed(error.to_string()))?
+        arrives.recv().map_err(|error| failed(gpu, error.to_string()))?
     };
-    result.map_err(|error| failed(error.to_string()))
+    result.map_err(|error| failed(gpu, error.to_string()))
+}
+
+/// The error of a readback that failed. An earlier error of the device explains it better than the failure itself.
+fn failed(gpu: &Gpu, reason: String) -> GpuError {
+    // The loss of a device is told when it is asked.
+    let _ = gpu.device.poll(wgpu::PollType::Poll);
+    gpu.check().err().unwrap_or(GpuError::Readback(reason))
 }
