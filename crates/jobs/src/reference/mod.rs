@@ -24,7 +24,7 @@ use lovelock_session::snapshot::FrameSnapshot;
 use serde::Serialize;
 
 pub use scenes::{ReferenceColor, ReferenceLight, ReferenceScene};
-use strands::{DrawnStrands, drawn_strands};
+use strands::{StrandTexts, drawn_strands};
 
 use crate::bench::load;
 
@@ -192,8 +192,8 @@ struct Hair {
     camera: Camera,
     /// The name of the hairstyle.
     id: &'static str,
-    /// In the coordinates of the file.
-    strands: DrawnStrands,
+    /// Its strands in the coordinates of the files. Kept, because making text takes longer than writing it, and grey hair needs it again.
+    texts: StrandTexts,
     /// The share of grey strands for which files were written last, and their names: all images of a hairstyle share the files.
     written: Option<(f32, StrandFiles)>,
 }
@@ -214,7 +214,7 @@ impl Hair {
         let camera = view::camera_for(&drawn.points, &input.world_from_head);
         let head_from_world = input.world_from_head.inverse();
         let in_mm = drawn.map(|p| head_from_world.transform_point3(p) * MM, MM);
-        Ok(Self { camera, id: preset.id(), strands: in_mm, snapshot, written: None })
+        Ok(Self { camera, id: preset.id(), texts: in_mm.texts(), snapshot, written: None })
     }
 
     /// Writes the strands, in two files if some are grey, unless they were written last. Returns the names of the files.
@@ -224,15 +224,14 @@ impl Hair {
         {
             return Ok(files.clone());
         }
-        let write = |name: String, strands: &DrawnStrands| {
-            write_whole(&folder.join(&name), strands.text().as_bytes()).map(|()| name)
-        };
+        let write =
+            |name: String, text: &str| write_whole(&folder.join(&name), text.as_bytes()).map(|()| name);
         let files = if grey > 0.0 {
-            let [pigmented, white] = self.strands.parted(grey);
+            let [pigmented, white] = self.texts.parted_files(grey);
             let white = write(format!("{}-white.txt", self.id), &white)?;
             (write(format!("{}-pigmented.txt", self.id), &pigmented)?, Some(white))
         } else {
-            (write(format!("{}.txt", self.id), &self.strands)?, None)
+            (write(format!("{}.txt", self.id), &self.texts.file())?, None)
         };
         self.written = Some((grey, files.clone()));
         Ok(files)
@@ -272,7 +271,7 @@ impl Hair {
             name: scene.name(),
             strands_file,
             white_strands_file,
-            strands: self.strands.strands.len(),
+            strands: self.texts.count(),
             camera: ReferenceCamera {
                 eye: point(self.camera.eye),
                 target: point(self.camera.target),

@@ -6,6 +6,7 @@ use std::ops::Range;
 use glam::Vec3;
 use lovelock_groom::PigmentVariation;
 use lovelock_render::{DrawnHair, FrameInput};
+use rayon::prelude::*;
 
 /// The longest segment in the file, in radii: in longer ones a path tracer meets the surface that it has just left.
 const MAX_RADII: f32 = 200.0;
@@ -55,28 +56,19 @@ impl DrawnStrands {
         }
     }
 
-    /// The strands with pigment and those without, of hair with that share of grey strands.
-    pub(super) fn parted(&self, grey: f32) -> [Self; 2] {
-        let variation = PigmentVariation { grey, ..PigmentVariation::default() };
-        [false, true].map(|is_white| {
-            let of_part = |&shade: &f32| (variation.factor(0.0, shade, 0) < 1.0) == is_white;
-            let pairs = self.strands.iter().zip(&self.shades).filter(|(_, shade)| of_part(shade));
-            let (strands, shades) = pairs.map(|(strand, &shade)| (strand.clone(), shade)).unzip();
-            Self { points: self.points.clone(), half_widths: self.half_widths.clone(), strands, shades }
-        })
+    /// The strands as text in the unit of the points.
+    pub(super) fn texts(&self) -> StrandTexts {
+        let texts = self.strands.par_iter().map(|strand| self.text_of(strand)).collect();
+        StrandTexts { texts, shades: self.shades.clone() }
     }
 
-    /// Control points of cubic B-splines as text: `x y z radius` per line in the unit of the points, and an empty line between
-    /// strands. Strands of a single point are left out.
+    /// Control points of the cubic B-spline of a strand: `x y z radius` per line. Empty for a strand of a single point.
     ///
     /// A B-spline ends before its last control point, so each end is continued by its own mirror image, and the curve begins and
     /// ends at the strand's ends. Segments longer than 200 radii are divided evenly.
-    pub(super) fn text(&self) -> String {
+    fn text_of(&self, strand: &Range<usize>) -> String {
         let mut text = String::new();
-        for strand in self.strands.iter().filter(|strand| strand.len() > 1) {
-            if !text.is_empty() {
-                text.push('\n');
-            }
+        if strand.len() > 1 {
             for (p, radius) in self.controls(strand) {
                 // Writing to a string does not fail.
                 let _ = writeln!(text, "{:.5} {:.5} {:.5} {radius:.6}", p.x, p.y, p.z);
@@ -110,6 +102,42 @@ impl DrawnStrands {
         }
         controls
     }
+}
+
+/// The text of each strand, from which files of all or some of them are put together.
+#[derive(Clone, Debug, Default)]
+pub(super) struct StrandTexts {
+    texts: Vec<String>,
+    /// The shade of each strand, 0 to 1.
+    shades: Vec<f32>,
+}
+
+impl StrandTexts {
+    /// The number of strands.
+    pub(super) fn count(&self) -> usize {
+        self.texts.len()
+    }
+
+    /// The file of all strands: their text, and an empty line between them.
+    pub(super) fn file(&self) -> String {
+        joined(self.texts.iter())
+    }
+
+    /// The files of the strands with pigment and of those without, of hair with that share of grey strands.
+    pub(super) fn parted_files(&self, grey: f32) -> [String; 2] {
+        let variation = PigmentVariation { grey, ..PigmentVariation::default() };
+        [false, true].map(|is_white| {
+            let of_part = |shade: f32| (variation.factor(0.0, shade, 0) < 1.0) == is_white;
+            let pairs = self.texts.iter().zip(&self.shades).filter(|(_, shade)| of_part(**shade));
+            joined(pairs.map(|(text, _)| text))
+        })
+    }
+}
+
+/// The texts of strands with an empty line between them.
+fn joined<'a>(texts: impl Iterator<Item = &'a String>) -> String {
+    let texts: Vec<&str> = texts.filter(|text| !text.is_empty()).map(String::as_str).collect();
+    texts.join("\n")
 }
 
 #[cfg(test)]
@@ -146,7 +174,10 @@ mod tests {
                         5.00000 0.00000 0.00000 0.500000\n\
                         5.00000 2.00000 1.00000 0.500000\n\
                         5.00000 4.00000 2.00000 0.500000\n";
-        assert_eq!(two.text(), expected);
+        let texts = two.texts();
+        assert_eq!((texts.count(), texts.file()), (3, expected.to_owned()));
+        assert_eq!(texts.parted_files(1.0), [String::new(), texts.file()], "all are white");
+        assert_eq!(texts.parted_files(0.0), [texts.file(), String::new()], "none is white");
         // The curve begins where the strand does: (p0 + 4 p1 + p2) / 6.
         let controls = two.controls(&(2..4));
         assert!(((controls[0].0 + 4.0 * controls[1].0 + controls[2].0) / 6.0).distance(Vec3::X * 5.0) < 1e-6);

@@ -15,7 +15,8 @@ use super::bins::Bins;
 use super::clusters::PlacedClusters;
 use super::hair::fragments::{bounds, is_drawn};
 use super::hair::list::Fragments;
-use super::hair::order::{Pieces, SegmentKeys};
+use super::hair::opaque_depths::OpaqueDepths;
+use super::hair::order::{NearFirst, Pieces, SegmentKeys};
 use super::hair::state::BlendState;
 use super::hair::weigh::Weighed;
 use super::strand_points::{PointsIn, ShadedPoint, ShadedPoints, shade_all};
@@ -64,6 +65,8 @@ pub(super) struct TileScratch {
     pieces: Pieces,
     weighed: Weighed,
     wanted: Wanted,
+    near_first: NearFirst,
+    opaque: OpaqueDepths,
     fragments: Fragments,
 }
 
@@ -75,6 +78,7 @@ impl TileScratch {
             + self.pieces.bytes()
             + self.weighed.bytes()
             + self.wanted.bytes()
+            + self.near_first.bytes()
             + self.fragments.bytes()
     }
 }

@@ -17,6 +17,8 @@ pub(super) const BLOCKS_IN_ROW: usize = TILE / BLOCK_WIDTH;
 pub(super) const BLOCKS: usize = BLOCKS_IN_ROW * (TILE / BLOCK_HEIGHT);
 /// The transmittance of hair below which what is behind it is not shaded: a quarter of a step of 8 bits.
 pub(super) const UNSEEN: f32 = 1.0 / 1024.0;
+/// The transmittance at which blending in exact order ends: a fortieth of a step of 8 bits. The same number is in `eye/lists/resolve.wgsl`.
+pub(super) const OPAQUE: f32 = 1e-4;
 
 /// One number per pixel of a tile, with unused items at the end of each row.
 pub(super) type Plane = [f32; TILE * STRIDE];

@@ -89,8 +89,13 @@ struct Blend<'a> {
 
 impl SpanSink for Blend<'_> {
     #[inline(always)]
-    fn blend(&self) -> Option<&BlendState> {
-        Some(self.out)
+    fn is_row_open(&self, row: usize) -> bool {
+        self.out.is_row_open(row)
+    }
+
+    #[inline(always)]
+    fn is_open(&self, block: usize) -> bool {
+        self.out.is_open(block)
     }
 
     #[inline(always)]

@@ -5,7 +5,6 @@
 // Functions are inlined into the loops that `simd_versions!` compiles.
 #![allow(clippy::inline_always)]
 
-use super::state::BlendState;
 use crate::cpu::math::{max, min, saturate, sin, smoothstep};
 use crate::cpu::strand_points::ShadedPoint;
 use crate::cpu::tile::{BLOCK_HEIGHT, BLOCK_LANES, BLOCK_WIDTH, BLOCKS_IN_ROW, TILE};
@@ -49,10 +48,15 @@ pub(crate) fn bounds(a: &ShadedPoint, b: &ShadedPoint) -> [f32; 4] {
 
 /// Receives the blocks of a segment. A trait, because closures are not always inlined.
 pub(crate) trait SpanSink {
-    /// The blend of the tile, whose opaque blocks receive nothing more. Without one every block does.
+    /// Whether a block in a row of blocks may receive something.
     #[inline(always)]
-    fn blend(&self) -> Option<&BlendState> {
-        None
+    fn is_row_open(&self, _row: usize) -> bool {
+        true
+    }
+    /// Whether a block may receive something.
+    #[inline(always)]
+    fn is_open(&self, _block: usize) -> bool {
+        true
     }
     /// Receives a block of the segment from `a` to `b`.
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span);
@@ -96,7 +100,7 @@ pub(crate) fn each_span(
     let (slope, half_run) = if steep { (ny / nx, reach / nx.abs()) } else { (0.0, f32::INFINITY) };
     let wander = slope.abs() * (0.5 * (BLOCK_HEIGHT - 1) as f32);
     for row in top as usize / BLOCK_HEIGHT..=bottom as usize / BLOCK_HEIGHT {
-        if !sink.blend().is_none_or(|blend| blend.is_row_open(row)) {
+        if !sink.is_row_open(row) {
             continue;
         }
         let y = row * BLOCK_HEIGHT;
@@ -108,7 +112,7 @@ pub(crate) fn each_span(
         }
         for column in from as usize / BLOCK_WIDTH..=to as usize / BLOCK_WIDTH {
             let block = row * BLOCKS_IN_ROW + column;
-            if !sink.blend().is_none_or(|blend| blend.is_open(block)) {
+            if !sink.is_open(block) {
                 continue;
             }
             let (x, y) = ((column * BLOCK_WIDTH) as f32, y as f32);

@@ -3,14 +3,18 @@
 #![allow(clippy::inline_always, unsafe_code)]
 
 use std::cmp::Ordering;
+use std::hint::black_box;
 
+use glam::Vec4;
 use lovelock_base::memory::list_bytes;
 use lovelock_base::simd_versions;
 
+use super::blend::FETCHED;
 use super::fragments::{Span, SpanSink, each_span};
-use crate::cpu::math::{clamp, floor};
+use super::opaque_depths::OpaqueDepths;
+use crate::cpu::math::{clamp, floor, max};
 use crate::cpu::strand_points::ShadedPoint;
-use crate::cpu::surface::raster::SurfaceSamples;
+use crate::cpu::surface::raster::{Occlusion, SurfaceSamples};
 use crate::cpu::tile::{BLOCK_LANES, BLOCK_WIDTH, STRIDE, TILE, pixel_of};
 
 /// One segment in one pixel.
@@ -44,9 +48,16 @@ pub(crate) fn covered_samples(alpha: f32, [x, y]: [f32; 2], hash: f32) -> u32 {
 
 impl Fragment {
     /// Opacity in the samples that the body does not hide.
+    #[inline(always)]
     pub fn opacity(&self) -> f32 {
-        self.alpha * 0.25 * self.seen.count_ones() as f32
+        opacity_of(self.alpha, self.seen)
     }
+}
+
+/// See [`Fragment::opacity`].
+#[inline(always)]
+fn opacity_of(alpha: f32, seen: u32) -> f32 {
+    alpha * 0.25 * seen.count_ones() as f32
 }
 
 /// The fragments of a tile.
@@ -64,49 +75,111 @@ pub(crate) struct ListTile<'a> {
     /// The corner of the tile, pixels.
     pub origin: [f32; 2],
     pub points: &'a [ShadedPoint],
-    /// First point of each segment.
+    /// The segments to list, as indices into `first_points`.
     pub segments: &'a [u32],
-    /// For each of the indices in `segments`, the segment's first point.
     pub first_points: &'a [u32],
     pub samples: &'a SurfaceSamples,
+    /// What `samples` hide.
+    pub hidden: &'a Occlusion,
     /// Opacity of a strand where it covers a pixel completely.
     pub opacity: f32,
+    /// Whether the samples that fragments cover are used.
+    pub takes_samples: bool,
 }
 
 simd_versions! {
     /// [`list_segments`] for the vectors of `width`.
-    pub(crate) fn list_segments_simd(input: &ListTile, out: &mut Fragments) -> () {
-        list_segments(input, out)
+    pub(crate) fn list_segments_simd(
+        input: &ListTile, opaque: Option<&mut OpaqueDepths>, out: &mut Fragments
+    ) -> () {
+        list_segments(input, opaque, out)
     }
 }
 
-/// Lists the fragments of segments in the pixels of a tile.
+/// Lists the fragments of segments in the pixels of a tile: all, or with `opaque` those that are seen where all fragments are blended from
+/// near to far.
 #[inline(always)]
-fn list_segments(input: &ListTile, out: &mut Fragments) {
-    let mut sink = List { origin: input.origin, samples: input.samples, found: &mut out.found };
-    for &segment in input.segments {
-        let first = input.first_points[segment as usize] as usize;
-        let (a, b) = (&input.points[first], &input.points[first + 1]);
-        each_span(a, b, input.origin, input.opacity, &mut sink);
+fn list_segments(input: &ListTile, opaque: Option<&mut OpaqueDepths>, out: &mut Fragments) {
+    let mut sink = List { input, opaque, found: &mut out.found, nearer: 0.0 };
+    for segments in input.segments.chunks(FETCHED) {
+        let ends = segments.iter().map(|&segment| {
+            let first = input.first_points[segment as usize] as usize;
+            (&input.points[first], &input.points[first + 1])
+        });
+        // Points lie in the order of strands. These loads do not wait for each other, as those below would.
+        black_box(ends.clone().map(|(a, b)| a.x + b.hash).sum::<f32>());
+        for (a, b) in ends {
+            sink.nearer = max(a.depth, b.depth);
+            if sink.opaque.as_ref().is_none_or(|opaque| opaque.shows(sink.nearer)) {
+                each_span(a, b, input.origin, input.opacity, &mut sink);
+            }
+        }
     }
 }
 
 struct List<'a> {
-    origin: [f32; 2],
-    samples: &'a SurfaceSamples,
+    input: &'a ListTile<'a>,
+    /// Where pixels are opaque, if only fragments are listed that are seen.
+    opaque: Option<&'a mut OpaqueDepths>,
     found: &'a mut Vec<(u32, Fragment)>,
+    /// The depth of the nearer end of the segment.
+    nearer: f32,
+}
+
+/// The bits of a fragment that is in front of the body in all samples.
+const ALL_SEEN: u32 = 0b1111;
+
+impl List<'_> {
+    /// The samples in which the pixels of a span are in front of the body, see [`Fragment::seen`], and its opacity in them.
+    #[inline(always)]
+    fn seen(&self, span: &Span) -> ([u32; BLOCK_LANES], [f32; BLOCK_LANES]) {
+        let near = &self.input.hidden.near[span.block];
+        let mut is_in_front = true;
+        for from in (0..BLOCK_LANES).step_by(4) {
+            let four = |of: &[f32; BLOCK_LANES]| Vec4::from_slice(&of[from..from + 4]);
+            is_in_front &= four(&span.depth).cmpge(four(near)).all();
+        }
+        if is_in_front {
+            return ([ALL_SEEN; BLOCK_LANES], span.alpha);
+        }
+        let (left, top) = pixel_of(span.block, 0);
+        let (mut seen, mut opacity) = ([0; BLOCK_LANES], [0.0; BLOCK_LANES]);
+        for lane in 0..BLOCK_LANES {
+            let at = (top + lane / BLOCK_WIDTH) * STRIDE + left + lane % BLOCK_WIDTH;
+            for (sample, body) in self.input.samples.depths(at).into_iter().enumerate() {
+                seen[lane] |= u32::from(span.depth[lane] >= body) << sample;
+            }
+            opacity[lane] = opacity_of(span.alpha[lane], seen[lane]);
+        }
+        (seen, opacity)
+    }
 }
 
 impl SpanSink for List<'_> {
     #[inline(always)]
+    fn is_row_open(&self, row: usize) -> bool {
+        self.opaque.as_ref().is_none_or(|opaque| opaque.shows_in_row(row, self.nearer))
+    }
+
+    #[inline(always)]
+    fn is_open(&self, block: usize) -> bool {
+        self.opaque.as_ref().is_none_or(|opaque| opaque.shows_in_block(block, self.nearer))
+    }
+
+    #[inline(always)]
     fn take(&mut self, a: &ShadedPoint, b: &ShadedPoint, span: &Span) {
         let (left, top) = pixel_of(span.block, 0);
-        let mut seen = [0_u32; BLOCK_LANES];
-        for lane in 0..BLOCK_LANES {
-            let body = self.samples.depths((top + lane / BLOCK_WIDTH) * STRIDE + left + lane % BLOCK_WIDTH);
-            for (sample, body) in body.into_iter().enumerate() {
-                seen[lane] |= u32::from(span.depth[lane] >= body) << sample;
-            }
+        let (seen, mut opacity) = self.seen(span);
+        if let Some(opaque) = &mut self.opaque {
+            opaque.admit(span, &mut opacity);
+        }
+        // One bit per lane, so that lanes without a fragment cost no branch each.
+        let mut listed = 0_u32;
+        for from in (0..BLOCK_LANES).step_by(4) {
+            listed |= Vec4::from_slice(&opacity[from..from + 4]).cmpgt(Vec4::ZERO).bitmask() << from;
+        }
+        if listed == 0 {
+            return;
         }
         // All lanes, because a loop that skips some is not compiled to vectors.
         let mut colors = [[0.0; BLOCK_LANES]; 3];
@@ -117,19 +190,22 @@ impl SpanSink for List<'_> {
             }
         }
         let mut covered = [0_u32; BLOCK_LANES];
-        for lane in 0..BLOCK_LANES {
-            let (x, y) = (left + lane % BLOCK_WIDTH, top + lane / BLOCK_WIDTH);
-            let pixel = [self.origin[0] + x as f32, self.origin[1] + y as f32];
-            covered[lane] = covered_samples(span.alpha[lane], pixel, a.hash);
-        }
-        for lane in 0..BLOCK_LANES {
-            let (alpha, seen) = (span.alpha[lane], seen[lane]);
-            if alpha > 0.0 && seen != 0 {
-                let at = (top + lane / BLOCK_WIDTH) * STRIDE + left + lane % BLOCK_WIDTH;
-                let color = colors.map(|lanes| lanes[lane]);
-                let (depth, covered) = (span.depth[lane], covered[lane]);
-                self.found.push((at as u32, Fragment { depth, alpha, color, seen, covered }));
+        if self.input.takes_samples {
+            let origin = self.input.origin;
+            for lane in 0..BLOCK_LANES {
+                let (x, y) = (left + lane % BLOCK_WIDTH, top + lane / BLOCK_WIDTH);
+                let pixel = [origin[0] + x as f32, origin[1] + y as f32];
+                covered[lane] = covered_samples(span.alpha[lane], pixel, a.hash);
             }
+        }
+        while listed != 0 {
+            let lane = listed.trailing_zeros() as usize % BLOCK_LANES;
+            listed &= listed - 1;
+            let at = (top + lane / BLOCK_WIDTH) * STRIDE + left + lane % BLOCK_WIDTH;
+            let color = [colors[0][lane], colors[1][lane], colors[2][lane]];
+            let (depth, alpha) = (span.depth[lane], span.alpha[lane]);
+            let (seen, covered) = (seen[lane], covered[lane]);
+            self.found.push((at as u32, Fragment { depth, alpha, color, seen, covered }));
         }
     }
 }
@@ -245,8 +321,11 @@ fn nearness_key(depth: f32) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use lovelock_base::simd::Width;
+
     use super::*;
     use crate::Transparency;
+    use crate::cpu::hair::order::NearFirst;
     use crate::cpu::transparency::resolve;
 
     #[test]
@@ -297,17 +376,19 @@ mod tests {
     fn through(ys: &[f32], half_width: f32, opacity: f32, origin: [f32; 2], x: usize) -> [f32; TILE] {
         let (points, first_points) = strands(ys, half_width);
         let segments: Vec<u32> = (0..ys.len() as u32).collect();
-        let samples = Box::<SurfaceSamples>::default();
+        let (samples, hidden) = (Box::<SurfaceSamples>::default(), Occlusion::default());
         let input = ListTile {
             origin,
             points: &points,
             segments: &segments,
             first_points: &first_points,
             samples: &samples,
+            hidden: &hidden,
             opacity,
+            takes_samples: false,
         };
         let mut fragments = Fragments::default();
-        list_segments(&input, &mut fragments);
+        list_segments(&input, None, &mut fragments);
         let mut column = [1.0; TILE];
         fragments.each_pixel(|at, fragments| {
             if at % STRIDE == x {
@@ -343,6 +424,70 @@ mod tests {
         for pair in depths.windows(2) {
             let keys = [nearness_key(pair[1]), nearness_key(pair[0])];
             assert_eq!(keys[0].cmp(&keys[1]), pair[0].total_cmp(&pair[1]), "{pair:?}");
+        }
+    }
+
+    /// Strands across a tile in depths without an order, with the first point of each.
+    fn crossing_strands(count: u32) -> (Vec<ShadedPoint>, Vec<u32>) {
+        let noise = |i: u32, salt: u32| {
+            let bits =
+                (i.wrapping_mul(0x9e37_79b9) ^ salt.wrapping_mul(0x85eb_ca6b)).wrapping_mul(0xc2b2_ae35);
+            (bits >> 8) as f32 / (1 << 24) as f32
+        };
+        let point = |i: u32| ShadedPoint {
+            x: 36.0 * noise(i, 1) - 2.0,
+            y: 36.0 * (i % 2) as f32 - 2.0,
+            depth: 0.1 + 0.8 * noise(i / 2, 2) + 0.05 * noise(i, 3),
+            half_width: 0.1 + 1.5 * noise(i / 2, 4),
+            run_x: 0.0,
+            run_y: 1.0,
+            color: [noise(i, 5), noise(i, 6), noise(i, 7)],
+            hash: noise(i / 2, 8),
+        };
+        ((0..2 * count).map(point).collect(), (0..count).map(|strand| 2 * strand).collect())
+    }
+
+    #[test]
+    fn fragments_behind_opaque_pixels_are_left_out_and_change_nothing() {
+        let (points, first_points) = crossing_strands(3000);
+        let in_turn: Vec<u32> = (0..3000).collect();
+        let near_first = NearFirst::default().order(&in_turn, &first_points, &points).to_vec();
+        // A wall before some samples of the upper half of the tile.
+        let (mut samples, mut hidden) = (Box::<SurfaceSamples>::default(), Occlusion::default());
+        for (i, depth) in samples.depth.iter_mut().enumerate().take(TILE / 2 * STRIDE * 4) {
+            *depth = if i % 3 == 0 { 0.6 } else { 0.0 };
+        }
+        hidden.gather(&samples);
+        let tile = |segments| ListTile {
+            origin: [0.0, 0.0],
+            points: &points,
+            segments,
+            first_points: &first_points,
+            samples: &samples,
+            hidden: &hidden,
+            opacity: 0.4,
+            takes_samples: false,
+        };
+        let layers = |fragments: &mut Fragments| {
+            let mut layers = Vec::new();
+            fragments.each_pixel(|at, of| layers.push((at, resolve(Transparency::Exact, of))));
+            layers
+        };
+        let mut all = Fragments::default();
+        list_segments(&tile(&in_turn), None, &mut all);
+        let wanted = layers(&mut all);
+        assert!(wanted.iter().all(|(_, layer)| layer.through < 0.1), "control: hair covers the tile");
+        let mut opaque = OpaqueDepths::default();
+        for (segments, most) in [(&near_first, 0.6), (&in_turn, 1.0)] {
+            for &width in Width::ALL.iter().filter(|width| width.is_available()) {
+                let mut seen = Fragments::default();
+                opaque.clear();
+                list_segments_simd(width.for_eight(), &tile(segments), Some(&mut opaque), &mut seen);
+                let share = seen.found.len() as f32 / all.found.len() as f32;
+                println!("{width:?}: {share} of the fragments are listed");
+                assert!(share < most, "{width:?}: {share}");
+                assert!(layers(&mut seen) == wanted, "{width:?}, {share}");
+            }
         }
     }
 

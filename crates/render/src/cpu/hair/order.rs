@@ -4,6 +4,9 @@ use lovelock_base::memory::list_bytes;
 use lovelock_groom::Strands;
 use rayon::prelude::*;
 
+use crate::cpu::math::{max, min};
+use crate::cpu::strand_points::ShadedPoint;
+
 /// The depth and the index of a segment in one number: smaller is nearer; for equal depth, the larger index is nearer.
 ///
 /// The reverse of the far-to-near order of `DepthSort`: the same 16 bits of depth, and ties reversed.
@@ -130,9 +133,79 @@ impl Pieces {
     }
 }
 
+/// The segments of a tile, those with nearer ends first. Scratch memory.
+///
+/// They are divided into pieces by depth and not sorted within them: whoever lists fragments sorts those, and a segment reaches over several
+/// pieces anyway.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NearFirst {
+    /// The depth of the nearer end of each segment.
+    depths: Vec<f32>,
+    ordered: Vec<u32>,
+}
+
+impl NearFirst {
+    /// Its memory, bytes.
+    pub fn bytes(&self) -> u64 {
+        list_bytes(&self.depths) + list_bytes(&self.ordered)
+    }
+
+    /// Orders `segments`, which are indices into `first_points`.
+    pub fn order(&mut self, segments: &[u32], first_points: &[u32], points: &[ShadedPoint]) -> &[u32] {
+        let Self { depths, ordered } = self;
+        depths.clear();
+        depths.extend(segments.iter().map(|&segment| {
+            let first = first_points[segment as usize] as usize;
+            max(points[first].depth, points[first + 1].depth)
+        }));
+        let (far, near) = depths
+            .iter()
+            .fold((f32::INFINITY, 0.0), |(far, near), &depth| (min(far, depth), max(near, depth)));
+        let scale = if near > far { PIECES as f32 / (near - far) } else { 0.0 };
+        // The farthest depth belongs to the last piece.
+        let piece_of = |depth: f32| (((near - depth) * scale) as usize).min(PIECES - 1);
+        let mut ends = [0_usize; PIECES];
+        for &depth in depths.iter() {
+            ends[piece_of(depth)] += 1;
+        }
+        let mut sum = 0;
+        for end in &mut ends {
+            (*end, sum) = (sum, sum + *end);
+        }
+        ordered.resize(segments.len(), 0);
+        // Each start advances to the end of its piece.
+        for (&segment, &depth) in segments.iter().zip(depths.iter()) {
+            let slot = &mut ends[piece_of(depth)];
+            ordered[*slot] = segment;
+            *slot += 1;
+        }
+        ordered
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn segments_with_nearer_ends_come_first() {
+        let depth = |i: u32| 0.1 + 0.8 * ((i * 7919) % 2000) as f32 / 2000.0;
+        let points: Vec<_> =
+            (0..2000).map(|i| ShadedPoint { depth: depth(i), ..ShadedPoint::default() }).collect();
+        let first_points: Vec<u32> = (0..1000).map(|segment| 2 * segment).collect();
+        // A tile with every third segment.
+        let segments: Vec<u32> = (0..1000).step_by(3).collect();
+        let nearer = |segment: u32| depth(2 * segment).max(depth(2 * segment + 1));
+        let mut near_first = NearFirst::default();
+        let mut found = near_first.order(&segments, &first_points, &points).to_vec();
+        let step = 0.8 / PIECES as f32;
+        assert!(found.windows(2).all(|pair| nearer(pair[0]) >= nearer(pair[1]) - 1.01 * step));
+        assert!(found.windows(2).any(|pair| nearer(pair[0]) > nearer(pair[1]) + 0.001), "the control");
+        found.sort_unstable();
+        assert_eq!(found, segments, "every segment once");
+        assert_eq!(near_first.order(&[7], &first_points, &points), [7]);
+        assert!(near_first.order(&[], &first_points, &points).is_empty());
+    }
 
     #[test]
     fn the_nearest_middle_comes_first() {

@@ -114,8 +114,13 @@ struct Weigh<'a> {
 
 impl SpanSink for Weigh<'_> {
     #[inline(always)]
-    fn blend(&self) -> Option<&BlendState> {
-        Some(self.out)
+    fn is_row_open(&self, row: usize) -> bool {
+        self.out.is_row_open(row)
+    }
+
+    #[inline(always)]
+    fn is_open(&self, block: usize) -> bool {
+        self.out.is_open(block)
     }
 
     #[inline(always)]

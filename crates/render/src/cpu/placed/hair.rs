@@ -28,7 +28,7 @@ impl PlacedScene {
             scratch.blend.write(&mut scratch.hair);
         } else {
             scratch.fragments.clear();
-            self.list_strands(view, origin, segments, scratch);
+            self.list_strands(view, transparency, origin, segments, scratch);
             resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);
         }
     }
@@ -79,16 +79,34 @@ impl PlacedScene {
     }
 
     /// Adds the fragments of strands to the list.
-    fn list_strands(&self, view: &View, origin: [f32; 2], segments: &[u32], scratch: &mut TileScratch) {
+    fn list_strands(
+        &self,
+        view: &View,
+        transparency: Transparency,
+        origin: [f32; 2],
+        segments: &[u32],
+        scratch: &mut TileScratch,
+    ) {
+        let TileScratch { samples, hidden, near_first, opaque, fragments, .. } = scratch;
+        // The other modes weight fragments by all of their pixel.
+        let is_ordered = matches!(transparency, Transparency::Sorted | Transparency::Exact);
+        let segments = if is_ordered {
+            opaque.clear();
+            near_first.order(segments, self.segments(), &self.points)
+        } else {
+            segments
+        };
         let input = ListTile {
             origin,
             points: &self.points,
             segments,
             first_points: self.segments(),
-            samples: &scratch.samples,
+            samples,
+            hidden,
             opacity: view.uniform.opacity,
+            takes_samples: transparency == Transparency::Opaque,
         };
-        list_segments_simd(self.width.for_eight(), &input, &mut scratch.fragments);
+        list_segments_simd(self.width.for_eight(), &input, is_ordered.then_some(opaque), fragments);
     }
 
     /// Draws clusters, and strands among them.
@@ -107,7 +125,7 @@ impl PlacedScene {
         }
         scratch.fragments.clear();
         if !segments.is_empty() {
-            self.list_strands(view, origin, segments, scratch);
+            self.list_strands(view, transparency, origin, segments, scratch);
         }
         self.clusters.list(self.width, origin, tile, &scratch.samples, &mut scratch.fragments);
         resolve_tile(transparency, &mut scratch.fragments, &mut scratch.hair);

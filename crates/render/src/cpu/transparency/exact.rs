@@ -2,6 +2,7 @@
 
 use super::{Fragment, Layer};
 use crate::cpu::hair::list::nearest_first;
+use crate::cpu::tile::OPAQUE;
 
 /// Sorts the fragments and blends them.
 pub(super) fn resolve(fragments: &mut [Fragment]) -> Layer {
@@ -9,11 +10,14 @@ pub(super) fn resolve(fragments: &mut [Fragment]) -> Layer {
     blend(fragments)
 }
 
-/// Blends fragments in the order of [`nearest_first`].
+/// Blends fragments in the order of [`nearest_first`], until the pixel is opaque.
 pub(super) fn blend(fragments: &[Fragment]) -> Layer {
     let mut color = [0.0; 3];
     let mut through = 1.0;
     for fragment in fragments {
+        if through <= OPAQUE {
+            break;
+        }
         let share = fragment.opacity() * through;
         for (sum, c) in color.iter_mut().zip(fragment.color) {
             *sum += share * c;
