@@ -7,7 +7,7 @@ use glam::{Affine3A, Vec3};
 /// Structure of arrays, guide after guide, root first: point `p` of guide `g` is at index `g * points_per_guide + p`.
 /// All guides have the same number of points, equally spaced along each guide. The points beyond the end of a cut guide
 /// lie on its end (see [`crate::trimmed`]).
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub struct Guides {
     /// Points per guide, at least 2. A guide has one link fewer.
     pub points_per_guide: usize,
@@ -17,6 +17,21 @@ pub struct Guides {
     pub y: Vec<f32>,
     /// See `x`.
     pub z: Vec<f32>,
+}
+
+impl Clone for Guides {
+    fn clone(&self) -> Self {
+        let Self { points_per_guide, x, y, z } = self;
+        Self { points_per_guide: *points_per_guide, x: x.clone(), y: y.clone(), z: z.clone() }
+    }
+
+    /// Uses the memory of the lists, because guides are copied in every frame.
+    fn clone_from(&mut self, source: &Self) {
+        self.points_per_guide = source.points_per_guide;
+        for (to, from) in [(&mut self.x, &source.x), (&mut self.y, &source.y), (&mut self.z, &source.z)] {
+            to.clone_from(from);
+        }
+    }
 }
 
 impl Guides {
@@ -45,7 +60,7 @@ impl Guides {
 /// The guide strands at one instant, in world space: what the simulator produces and interpolation reads.
 ///
 /// Has the layout of [`Guides`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct GuideFrame {
     /// Time on the clip's clock, seconds.
     pub time_secs: f64,
@@ -53,6 +68,18 @@ pub struct GuideFrame {
     pub world_from_head: Affine3A,
     /// Positions in world space, metres.
     pub guides: Guides,
+}
+
+impl Clone for GuideFrame {
+    fn clone(&self) -> Self {
+        let Self { time_secs, world_from_head, guides } = self;
+        Self { time_secs: *time_secs, world_from_head: *world_from_head, guides: guides.clone() }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        (self.time_secs, self.world_from_head) = (source.time_secs, source.world_from_head);
+        self.guides.clone_from(&source.guides);
+    }
 }
 
 impl GuideFrame {

@@ -43,7 +43,7 @@ pub use import::{
     HairInfo, ImportError, ImportSettings, ImportedInPlace, PlacedGroom, Placement, hair_info, hair_look,
     import, import_around, import_in_place, import_noted, place,
 };
-pub use interpolate::interpolate;
+pub use interpolate::{FollowingStrands, interpolate};
 pub use io::{
     Bounds, CurveCache, CurveMotion, Facing, GltfContent, HAIR_FORMATS, HairFile, HairFileError, HairFormat,
     METRES_Y_UP, SURE, Unit, UnitGuess, UpAxis, gltf_content, guess_units, load_hair, load_hair_bytes,

@@ -77,7 +77,9 @@ impl DrawnStrands {
         (stored, unchanged): (&Strands, bool),
     ) -> bool {
         // Makes the list of this hairstyle known, without a strand.
+        let w = lovelock_base::clock::Stopwatch::start();
         self.fine.follow(input.style, 0);
+        let a = w.ms();
         let points = self.fine.points_per_strand;
         let target = if input.is_draft { DRAFT_PIXELS } else { TARGET_PIXELS };
         let portion = portion_of(input, height, target, (points, MAX_POINTS));
@@ -87,7 +89,16 @@ impl DrawnStrands {
             return unchanged && before.is_none();
         };
         let longer = self.fine.follow(input.style, portion.drawn);
+        let b = w.ms();
         self.details.follow_fine(input.style, &self.fine, longer);
+        if std::env::var_os("LL_T").is_some() {
+            eprintln!(
+                "fine0 {a:.1} fine {:.1} details {:.1} longer {longer} list {} points {points}",
+                b - a,
+                w.ms() - b,
+                self.fine.strands.len()
+            );
+        }
         let same = unchanged && before.is_some_and(|before| before.drawn == portion.drawn);
         if !same {
             grow_fine(width, &self.fine, portion.drawn, stored, &mut self.parents, &mut self.strands);

@@ -14,7 +14,7 @@ use lovelock_base::clock::Stopwatch;
 use lovelock_base::memory::list_bytes;
 use lovelock_base::simd::Width;
 use lovelock_gpu::PassTime;
-use lovelock_groom::{HairShading, Strands};
+use lovelock_groom::{FollowingStrands, HairShading, Strands};
 use lovelock_picture::check_size;
 
 use super::backdrop::Ground;
@@ -51,8 +51,8 @@ const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
 /// Renders pictures on the CPU. Keeps buffers from picture to picture.
 #[derive(Debug)]
 pub struct CpuRenderer {
-    /// Interpolated strands, kept while nothing moves them.
-    strands: Strands,
+    /// Interpolated strands; those that nothing moves are kept.
+    strands: FollowingStrands,
     drawn: DrawnStrands,
     light: Option<Box<SceneLight>>,
     kept: KeptInputs,
@@ -126,7 +126,7 @@ impl Scratch {
 impl Default for CpuRenderer {
     fn default() -> Self {
         Self {
-            strands: Strands::default(),
+            strands: FollowingStrands::default(),
             drawn: DrawnStrands::default(),
             light: None,
             kept: KeptInputs::default(),
@@ -204,13 +204,23 @@ impl CpuRenderer {
         };
         let mut made = std::mem::take(&mut self.strands);
         let strands = match input.hair {
-            HairPose::Guides(_) | HairPose::Resident(..) if unchanged.strands => &made,
-            _ => input.hair.strands(input.style, &mut made),
+            HairPose::Strands(strands) => strands,
+            HairPose::Guides(_) | HairPose::Resident(..) if unchanged.strands => made.strands(),
+            HairPose::Guides(guides) | HairPose::Resident(guides, _) => made.follow(input.style, guides),
         };
         let stored_ms = watch.ms();
         let mut drawn = std::mem::take(&mut self.drawn);
+        let t0 = watch.ms();
         let same_points = drawn.follow(self.placed.width, input, height, (strands, unchanged.strands));
         let interpolate_ms = watch.ms();
+        if std::env::var_os("LL_T").is_some() {
+            eprintln!(
+                "stored {t0:.1} drawn {:.1} points {} drawn {}",
+                interpolate_ms - t0,
+                strands.points(),
+                drawn.strands(strands).points()
+            );
+        }
         let now = [stored_ms, interpolate_ms - stored_ms];
         let mut kept_ms = 0.0;
         for ((made, now), is_kept) in
