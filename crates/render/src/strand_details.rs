@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use lovelock_base::memory::list_bytes;
 use lovelock_groom::fine::{FineStrand, FineStrands, lock_numbers};
-use lovelock_groom::{COLOUR_SAMPLES, ColourSamples, Hairstyle, StrandColour, colour_along};
+use lovelock_groom::{COLOUR_SAMPLES, ColourSamples, Hairstyle, StrandColour, StrandSet, colour_along};
 use rayon::prelude::*;
 
 /// Strands per task at least.
@@ -66,8 +66,13 @@ impl StrandDetails {
     /// Rebuilds for all strands of a list if `style` or the list has changed. Returns whether it has.
     pub fn follow_fine(&mut self, style: &Arc<Hairstyle>, fine: &FineStrands, list_changed: bool) -> bool {
         let count = fine.strands.len();
-        let same_style = self.style.as_ref().is_some_and(|old| Arc::ptr_eq(old, style));
-        if same_style && !list_changed && self.fine == count {
+        let same_style = || {
+            self.style
+                .as_ref()
+                .is_some_and(|old| Arc::ptr_eq(old, style) || is_alike(&old.strands, &style.strands))
+        };
+        if !list_changed && self.fine == count && same_style() {
+            self.style = Some(Arc::clone(style));
             return false;
         }
         let before = self.take_lists();
@@ -129,6 +134,14 @@ impl StrandDetails {
         let known = !samples.is_empty() && !self.colour_of.is_empty();
         known.then_some(PointColours { of: &self.colour_of, samples })
     }
+}
+
+/// Whether the strands have the same constant properties, as while their guides are brushed.
+fn is_alike(a: &StrandSet, b: &StrandSet) -> bool {
+    a.first_point == b.first_point
+        && (&a.wisp, &a.weights, &a.shade) == (&b.wisp, &b.weights, &b.shade)
+        && a.taper == b.taper
+        && a.colours == b.colours
 }
 
 /// The colours of strand points.

@@ -26,6 +26,8 @@ pub struct ParentPoints {
     z: Vec<f32>,
     /// Whether all stored strands have that number of points, so that they can be used as they are.
     even: bool,
+    /// Whether the points of each stored strand are needed.
+    needed: Vec<bool>,
 }
 
 impl ParentPoints {
@@ -34,16 +36,25 @@ impl ParentPoints {
         [&self.x, &self.y, &self.z].into_iter().map(list_bytes).sum()
     }
 
-    /// Takes the strands of a frame.
-    pub fn follow(&mut self, strands: &Strands, points: usize) {
+    /// Takes the strands of a frame that are parents of `children`.
+    pub fn follow(&mut self, strands: &Strands, points: usize, children: &[FineStrand]) {
         self.points = points;
         self.even = strands.first_point.windows(2).all(|ends| (ends[1] - ends[0]) as usize == points);
         if self.even {
             return;
         }
+        self.needed.clear();
+        self.needed.resize(strands.count(), false);
+        for &parent in children.iter().flat_map(|child| &child.parents) {
+            if let Some(needed) = self.needed.get_mut(parent as usize) {
+                *needed = true;
+            }
+        }
+        let needed = &self.needed;
         for (to, from) in [(&mut self.x, &strands.x), (&mut self.y, &strands.y), (&mut self.z, &strands.z)] {
             to.resize(strands.count() * points, 0.0);
-            to.par_chunks_mut(points).zip(strands.first_point.par_windows(2)).for_each(|(to, ends)| {
+            let of_strands = to.par_chunks_mut(points).zip(strands.first_point.par_windows(2)).zip(needed);
+            of_strands.filter(|(_, needed)| **needed).for_each(|((to, ends), _)| {
                 let own = from.get(ends[0] as usize..ends[1] as usize).unwrap_or(&[]);
                 let Some(links) = own.len().checked_sub(1).filter(|links| *links > 0) else {
                     to.fill(own.first().copied().unwrap_or(f32::NAN));
@@ -98,7 +109,7 @@ pub fn grow_fine(
     if out.first_point.len() != count + 1 || out.first_point.get(1) != Some(&(points as u32)) {
         out.first_point = (0..=count).map(|i| (i * points) as u32).collect();
     }
-    parents.follow(strands, points);
+    parents.follow(strands, points, &fine.strands[..count]);
     let from = parents.axes(strands);
     for axis in [&mut out.x, &mut out.y, &mut out.z] {
         axis.resize(count * points, 0.0);

@@ -283,6 +283,25 @@ impl Block {
         self.velocity.copy_from_slice(&old.velocity);
     }
 
+    /// Gives the guide in lane `k` the places that it has in lane `lane` of `old`, if both have the same rest shape: what [`Block::copy_motion`]
+    /// computes differs from them by rounding, and guides that nobody touches should stay where they are.
+    pub(crate) fn keep_places(&mut self, k: usize, old: &Block, lane: usize) {
+        let points = self.points();
+        let same3 = |a: &[Lane3], b: &[Lane3]| (0..points).all(|i| at(&a[i], k) == at(&b[i], lane));
+        let (own, rest) = (&self.rest, &old.rest);
+        let same = old.points() == points
+            && same3(&own.position, &rest.position)
+            && same3(&own.direction, &rest.direction)
+            && same3(&own.bend, &rest.bend)
+            && (0..points).all(|i| own.length[i][k] == rest.length[i][lane]);
+        if same {
+            for i in 0..points {
+                put(&mut self.position[i], k, at(&old.position[i], lane));
+                put(&mut self.bend[i], k, at(&old.bend[i], lane));
+            }
+        }
+    }
+
     /// Computes what moves beside positions and velocities from the positions; see [`Block::copy_motion`].
     pub(crate) fn rebuild(&mut self, from_head: &Map) {
         let mut moved = self.clone();

@@ -95,6 +95,9 @@ impl Simulation {
             }
             for (block, old) in next.blocks.iter_mut().zip(&gathered) {
                 block.copy_motion(old, &from_head);
+                if !retied && !self.is_partial {
+                    self.keep_places(block, |guide| !moved.get(guide as usize).is_some_and(|moved| *moved));
+                }
             }
         }
         if retied {
@@ -112,6 +115,14 @@ impl Simulation {
         next.measure_rest_distances();
         next.measure_field_distances();
         *self = next;
+    }
+
+    /// Gives those guides of `block` for which `stays` is true the places that they have here, if their rest shapes are the same.
+    fn keep_places(&self, block: &mut Block, stays: impl Fn(u32) -> bool) {
+        for k in (0..block.used).filter(|k| stays(block.guides[*k])) {
+            let (from, lane) = self.slots[block.guides[k] as usize];
+            block.keep_places(k, &self.blocks[from as usize], lane as usize);
+        }
     }
 
     /// Whether `style` differs from the current style at most in its strands and in its factors on the motion.
@@ -190,6 +201,7 @@ impl Simulation {
         self.moved.resize(count, false);
         self.stamps = Stamps::new();
         let mut touched = vec![false; self.blocks.len()];
+        let mut moves = vec![false; count];
         for &guide in guides.iter().filter(|guide| **guide < count) {
             let places: Vec<Vec3> =
                 (0..points).map(|i| frame.guides.point(guide, i) - self.head.place).collect();
@@ -201,7 +213,7 @@ impl Simulation {
             for (row, place) in self.blocks[block as usize].position.iter_mut().zip(places).skip(1) {
                 put(row, lane as usize, place);
             }
-            self.moved[guide] = true;
+            (self.moved[guide], moves[guide]) = (true, true);
             touched[block as usize] = true;
         }
         if self.tie_blend.is_some() {
@@ -210,9 +222,13 @@ impl Simulation {
         let from_head = self.head.map_from_head(self.head.place);
         let first_free = first_free(self.clamped_links, points);
         for (block, _) in self.blocks.iter_mut().zip(touched).filter(|(_, touched)| *touched) {
+            let before = block.clone();
             block.rest = RestShape::new(rest, &block.lanes(), first_free);
             let old = block.clone();
             block.copy_motion(&old, &from_head);
+            for k in (0..block.used).filter(|k| !moves[block.guides[*k] as usize]) {
+                block.keep_places(k, &before, k);
+            }
             // The factors are outdated.
             block.bending = Bending::new(points);
         }
