@@ -119,8 +119,9 @@ impl Simulation {
 
     /// Gives those guides of `block` for which `stays` is true the places that they have here, if their rest shapes are the same.
     fn keep_places(&self, block: &mut Block, stays: impl Fn(u32) -> bool) {
-        for k in (0..block.used).filter(|k| stays(block.guides[*k])) {
-            let (from, lane) = self.slots[block.guides[k] as usize];
+        let guides = block.guides;
+        for k in (0..block.used).filter(|k| stays(guides[*k])) {
+            let (from, lane) = self.slots[guides[k] as usize];
             block.keep_places(k, &self.blocks[from as usize], lane as usize);
         }
     }
@@ -226,7 +227,7 @@ impl Simulation {
             block.rest = RestShape::new(rest, &block.lanes(), first_free);
             let old = block.clone();
             block.copy_motion(&old, &from_head);
-            for k in (0..block.used).filter(|k| !moves[block.guides[*k] as usize]) {
+            for k in (0..block.used).filter(|k| !moves[before.guides[*k] as usize]) {
                 block.keep_places(k, &before, k);
             }
             // The factors are outdated.
