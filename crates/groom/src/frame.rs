@@ -7,6 +7,7 @@
 //! The frame is carried along the mean of the wisp's guides by parallel transport: the smallest rotation from tangent
 //! to tangent. At the root it is the frame of the rest shape, rotated with the head, whatever the guides do. Roots and
 //! their offsets therefore stay exactly on the moving scalp, and the frame cannot flip between frames.
+#![allow(clippy::inline_always, reason = "interpolation is compiled for several widths of vectors")]
 
 use glam::{Affine3A, Mat3, Vec3, Vec3A};
 
@@ -212,7 +213,7 @@ impl WispCurve {
     }
 
     /// Normals, binormals and tangents at the fractions `t` of the links `p`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn axes<const N: usize>(&self, p: [usize; N], t: [f32; N]) -> [Lanes<N>; 3] {
         let mut tangent = [[0.0; N]; 3];
         let mut normal = [[0.0; N]; 3];
@@ -238,7 +239,7 @@ impl WispCurve {
 }
 
 /// The link and the fraction of it at parameter `u` of a curve of `links` links.
-#[inline]
+#[inline(always)]
 pub(crate) fn locate(u: f32, links: usize) -> (usize, f32) {
     let u = u.max(0.0).min(links as f32);
     let p = (u as i32).min(links as i32 - 1);
@@ -246,7 +247,7 @@ pub(crate) fn locate(u: f32, links: usize) -> (usize, f32) {
 }
 
 /// Points of the uniform Catmull-Rom segments between `controls[p + 1]` and `controls[p + 2]`, at the fractions `t`.
-#[inline]
+#[inline(always)]
 pub(crate) fn catmull_rom<const N: usize>(controls: &[[f32; 3]], p: [usize; N], t: [f32; N]) -> Lanes<N> {
     let mut c = [[[0.0; N]; 3]; 4];
     for lane in 0..N {
@@ -285,7 +286,7 @@ fn mix(controls: &[Vec3A; 3], w: [f32; 3]) -> Vec3A {
 
 /// Gram-Schmidt: unit normals, binormals and tangents. The vectors interpolated between neighbouring guide points
 /// vanish only where a guide folds back on itself; the axes are finite and orthonormal even there.
-#[inline]
+#[inline(always)]
 fn orthonormal<const N: usize>(mut tangent: Lanes<N>, mut normal: Lanes<N>) -> [Lanes<N>; 3] {
     let mut binormal = [[0.0; N]; 3];
     let mut smallest = [0.0; N];

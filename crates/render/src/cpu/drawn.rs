@@ -34,7 +34,8 @@ impl DrawnHair {
         let mut made = Strands::default();
         let stored = input.hair.strands(input.style, &mut made);
         let mut drawn = DrawnStrands::default();
-        drawn.follow(Width::widest(), input, height, (stored, false));
+        drawn.choose(input, height);
+        drawn.grow(Width::widest(), stored, false);
         let (portion, points) =
             drawn.portion().unwrap_or_else(|| (Portion::of_all(input.style.strands.count()), 1));
         let half = 0.5 * input.look.diameter * input.look.real_hairs / portion.sum().max(1.0);
@@ -67,43 +68,38 @@ impl DrawnStrands {
         self.fine.bytes() + self.parents.bytes() + self.strands.bytes() + self.details.bytes()
     }
 
-    /// Makes the strands of `input` for a picture `height` pixels high from the `stored` ones of the frame, which may be the same as
-    /// those of the last one. Returns whether the points are the same.
-    pub fn follow(
-        &mut self,
-        width: Width,
-        input: &FrameInput,
-        height: u32,
-        (stored, unchanged): (&Strands, bool),
-    ) -> bool {
+    /// Chooses the strands of `input` for a picture `height` pixels high. Returns whether they are those of the last one.
+    pub fn choose(&mut self, input: &FrameInput, height: u32) -> bool {
         // Makes the list of this hairstyle known, without a strand.
-        let w = lovelock_base::clock::Stopwatch::start();
         self.fine.follow(input.style, 0);
-        let a = w.ms();
         let points = self.fine.points_per_strand;
         let target = if input.is_draft { DRAFT_PIXELS } else { TARGET_PIXELS };
         let portion = portion_of(input, height, target, (points, MAX_POINTS));
         let before = std::mem::replace(&mut self.portion, portion);
         let Some(portion) = portion else {
             self.details.follow(input.style);
-            return unchanged && before.is_none();
+            return before.is_none();
         };
         let longer = self.fine.follow(input.style, portion.drawn);
-        let b = w.ms();
         self.details.follow_fine(input.style, &self.fine, longer);
-        if std::env::var_os("LL_T").is_some() {
-            eprintln!(
-                "fine0 {a:.1} fine {:.1} details {:.1} longer {longer} list {} points {points}",
-                b - a,
-                w.ms() - b,
-                self.fine.strands.len()
-            );
+        before.is_some_and(|before| before.drawn == portion.drawn)
+    }
+
+    /// Marks the stored strands that the chosen ones are made from, if fine ones were chosen.
+    pub fn mark_parents(&self, marks: &mut [bool]) {
+        let drawn = self.portion.map_or(0, |portion| portion.drawn.min(self.fine.strands.len()));
+        for &parent in self.fine.strands[..drawn].iter().flat_map(|strand| &strand.parents) {
+            if let Some(mark) = marks.get_mut(parent as usize) {
+                *mark = true;
+            }
         }
-        let same = unchanged && before.is_some_and(|before| before.drawn == portion.drawn);
-        if !same {
+    }
+
+    /// Makes the chosen strands from the `stored` ones of the frame, unless they are the `same` as those of the last one.
+    pub fn grow(&mut self, width: Width, stored: &Strands, same: bool) {
+        if let Some(portion) = self.portion.filter(|_| !same) {
             grow_fine(width, &self.fine, portion.drawn, stored, &mut self.parents, &mut self.strands);
         }
-        same
     }
 
     /// The strands that are drawn.

@@ -28,13 +28,13 @@ use super::kept::{KeptInputs, Unchanged};
 use super::layers::LayerTiles;
 use super::placed::{PlacedScene, TileScratch, copy_rows};
 use super::pool::Pool;
+use super::shadow::{ShadowStage, caster_step, casters_of};
 use super::surface::light::SurfaceLight;
 use super::tile::{Grid, SurfacePlanes};
 use super::tone_map::encode;
 use super::view::{FibreView, ShadingView, View};
 use crate::backdrop::{Backdrop, LaidBackdrop};
 use crate::clusters::{of_casters, without_strands};
-use crate::cpu::shadow::ShadowStage;
 use crate::fibre;
 use crate::frame::INTERPOLATE;
 use crate::scene_light::SceneLight;
@@ -53,6 +53,8 @@ const DEPTH_TEXELS: u32 = body_depth::SIZE as u32;
 pub struct CpuRenderer {
     /// Interpolated strands; those that nothing moves are kept.
     strands: FollowingStrands,
+    /// Which of them a draft needs.
+    needed: Vec<bool>,
     drawn: DrawnStrands,
     light: Option<Box<SceneLight>>,
     kept: KeptInputs,
@@ -103,6 +105,25 @@ enum Target<'a> {
     Layers(&'a mut Layers, bool, bool),
 }
 
+/// Which stored strands a draft needs: those that the `drawn` ones are made from, and those that cast shadows. `None` if all are.
+fn needed_strands<'a>(
+    input: &FrameInput,
+    drawn: &DrawnStrands,
+    marks: &'a mut Vec<bool>,
+) -> Option<&'a [bool]> {
+    let (count, points) = (input.style.strands.count(), input.style.strands.points());
+    let step = caster_step(input, points);
+    // Given transmittance has a number for each point.
+    if step <= 1 || drawn.portion().is_none() || input.known.is_some() {
+        return None;
+    }
+    marks.clear();
+    marks.resize(count, false);
+    casters_of(count, step).for_each(|strand| marks[strand] = true);
+    drawn.mark_parents(marks);
+    Some(marks)
+}
+
 /// Scratch memory of a thread for one tile.
 #[derive(Debug, Default)]
 struct Scratch {
@@ -127,6 +148,7 @@ impl Default for CpuRenderer {
     fn default() -> Self {
         Self {
             strands: FollowingStrands::default(),
+            needed: Vec::new(),
             drawn: DrawnStrands::default(),
             light: None,
             kept: KeptInputs::default(),
@@ -202,25 +224,19 @@ impl CpuRenderer {
             self.kept.forget();
             Unchanged::default()
         };
+        let mut drawn = std::mem::take(&mut self.drawn);
+        let same_points = drawn.choose(input, height) && unchanged.strands;
         let mut made = std::mem::take(&mut self.strands);
         let strands = match input.hair {
             HairPose::Strands(strands) => strands,
-            HairPose::Guides(_) | HairPose::Resident(..) if unchanged.strands => made.strands(),
-            HairPose::Guides(guides) | HairPose::Resident(guides, _) => made.follow(input.style, guides),
+            HairPose::Guides(guides) | HairPose::Resident(guides, _) => {
+                let needed = needed_strands(input, &drawn, &mut self.needed);
+                made.follow(input.style, guides, needed)
+            }
         };
         let stored_ms = watch.ms();
-        let mut drawn = std::mem::take(&mut self.drawn);
-        let t0 = watch.ms();
-        let same_points = drawn.follow(self.placed.width, input, height, (strands, unchanged.strands));
+        drawn.grow(self.placed.width, strands, same_points);
         let interpolate_ms = watch.ms();
-        if std::env::var_os("LL_T").is_some() {
-            eprintln!(
-                "stored {t0:.1} drawn {:.1} points {} drawn {}",
-                interpolate_ms - t0,
-                strands.points(),
-                drawn.strands(strands).points()
-            );
-        }
         let now = [stored_ms, interpolate_ms - stored_ms];
         let mut kept_ms = 0.0;
         for ((made, now), is_kept) in

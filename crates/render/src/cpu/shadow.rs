@@ -11,7 +11,8 @@ use lovelock_groom::fine::moved_apart;
 use lovelock_shadow::{ColumnMap, CpuShadow, LightFrame, ShadowError, ShadowInput, ShadowMethod, cpu_shadow};
 use rayon::prelude::*;
 
-use self::casters::{Casters, step_of};
+use self::casters::Casters;
+pub(super) use self::casters::{caster_step, casters_of};
 use super::kept::Unchanged;
 use crate::shadow_look::{PIECE, ShadowLook, has_soft_skin, pack};
 use crate::skin::Neighbours;
@@ -217,7 +218,7 @@ impl ShadowStage {
         if let Some(known) = input.known {
             known.check(lights.len(), drawn.points(), positions.len())?;
         }
-        let step = step_of(stored, input.is_draft && input.known.is_none() && method.sums_strands());
+        let step = caster_step(input, stored.points());
         for (k, light) in self.lights.iter_mut().enumerate() {
             let map = was_whole && unchanged.strands && unchanged.lights[k] && light.step <= step;
             light.keeps = Keeps { map, points: map && same_points, vertices: map && unchanged.surface };

@@ -149,6 +149,9 @@ pub(crate) struct Outcome {
     pub(crate) max_speed_squared: f32,
 }
 
+/// Places of a guide that differ by less count as rounding, square metres.
+const ROUNDING_SQUARED: f32 = 1e-12;
+
 /// Penetration of a point into a collider.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Depth {
@@ -283,8 +286,8 @@ impl Block {
         self.velocity.copy_from_slice(&old.velocity);
     }
 
-    /// Gives the guide in lane `k` the places that it has in lane `lane` of `old`, if both have the same rest shape: what [`Block::copy_motion`]
-    /// computes differs from them by rounding, and guides that nobody touches should stay where they are.
+    /// Gives the guide in lane `k` the places that it has in lane `lane` of `old`, if both have the same rest shape or those places are nearly
+    /// its own: what [`Block::copy_motion`] computes differs from them by rounding, and hair that nobody touches should stay where it is.
     pub(crate) fn keep_places(&mut self, k: usize, old: &Block, lane: usize) {
         let points = self.points();
         let same3 = |a: &[Lane3], b: &[Lane3]| (0..points).all(|i| at(&a[i], k) == at(&b[i], lane));
@@ -294,10 +297,17 @@ impl Block {
             && same3(&own.direction, &rest.direction)
             && same3(&own.bend, &rest.bend)
             && (0..points).all(|i| own.length[i][k] == rest.length[i][lane]);
+        let is_near = |i: usize| {
+            at(&self.position[i], k).distance_squared(at(&old.position[i], lane)) < ROUNDING_SQUARED
+        };
         if same {
             for i in 0..points {
                 put(&mut self.position[i], k, at(&old.position[i], lane));
                 put(&mut self.bend[i], k, at(&old.bend[i], lane));
+            }
+        } else if old.points() == points && (0..points).all(is_near) {
+            for i in 0..points {
+                put(&mut self.position[i], k, at(&old.position[i], lane));
             }
         }
     }

@@ -96,7 +96,7 @@ impl Simulation {
             for (block, old) in next.blocks.iter_mut().zip(&gathered) {
                 block.copy_motion(old, &from_head);
                 if !retied && !self.is_partial {
-                    self.keep_places(block, |guide| !moved.get(guide as usize).is_some_and(|moved| *moved));
+                    self.keep_places(block);
                 }
             }
         }
@@ -117,11 +117,10 @@ impl Simulation {
         *self = next;
     }
 
-    /// Gives those guides of `block` for which `stays` is true the places that they have here, if their rest shapes are the same.
-    fn keep_places(&self, block: &mut Block, stays: impl Fn(u32) -> bool) {
-        let guides = block.guides;
-        for k in (0..block.used).filter(|k| stays(guides[*k])) {
-            let (from, lane) = self.slots[guides[k] as usize];
+    /// Gives guides of `block` the places that they have here; see [`Block::keep_places`].
+    fn keep_places(&self, block: &mut Block) {
+        for k in 0..block.used {
+            let (from, lane) = self.slots[block.guides[k] as usize];
             block.keep_places(k, &self.blocks[from as usize], lane as usize);
         }
     }

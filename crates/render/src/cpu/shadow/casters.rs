@@ -6,12 +6,23 @@
 use lovelock_groom::Strands;
 use rayon::prelude::*;
 
+use crate::FrameInput;
+
 /// The most points of strands that cast shadows in a draft, about those of the default hair.
 const DRAFT_POINTS: usize = 1 << 17;
 
-/// One of how many `strands` casts shadows.
-pub(super) fn step_of(strands: &Strands, is_draft: bool) -> usize {
-    if is_draft { strands.points().div_ceil(DRAFT_POINTS).max(1) } else { 1 }
+/// One of how many stored strands, which have so many `points` together, casts shadows in a picture of `input`.
+pub(in crate::cpu) fn caster_step(input: &FrameInput, points: usize) -> usize {
+    step_of(points, input.is_draft && input.known.is_none() && input.shadow.method.sums_strands())
+}
+
+fn step_of(points: usize, is_thinned: bool) -> usize {
+    if is_thinned { points.div_ceil(DRAFT_POINTS).max(1) } else { 1 }
+}
+
+/// The strands that cast shadows if one of `step` of `count` does.
+pub(in crate::cpu) fn casters_of(count: usize, step: usize) -> impl Iterator<Item = usize> {
+    (step / 2..count).step_by(step)
 }
 
 /// One of so many strands, evenly from all wisps.
@@ -24,13 +35,9 @@ impl Casters {
     /// Takes one of `step` strands, at least two. Returns the number of strands that each stands for, by their points.
     pub fn follow(&mut self, strands: &Strands, step: usize) -> f32 {
         let points = strands.x.len().min(strands.y.len()).min(strands.z.len());
-        let ranges: Vec<_> = strands
-            .first_point
-            .windows(2)
-            .skip(step / 2)
-            .step_by(step)
-            .map(|ends| (ends[0] as usize).min(points)..(ends[1] as usize).min(points))
-            .collect();
+        let ends = |strand: usize| (strands.first_point[strand] as usize).min(points);
+        let ranges: Vec<_> =
+            casters_of(strands.count(), step).map(|strand| ends(strand)..ends(strand + 1)).collect();
         let mut first_point = Vec::with_capacity(ranges.len() + 1);
         let mut sum = 0;
         first_point.push(0);
@@ -84,7 +91,10 @@ mod tests {
     fn only_drafts_of_much_hair_have_fewer() {
         let (few, many) = (strands(20_000), strands(200_000));
         assert!(few.points() < DRAFT_POINTS && many.points() > 4 * DRAFT_POINTS);
-        assert_eq!([&few, &many].map(|strands| step_of(strands, false)), [1, 1]);
-        assert_eq!([&few, &many, &Strands::default()].map(|strands| step_of(strands, true)), [1, 5, 1]);
+        assert_eq!([&few, &many].map(|strands| step_of(strands.points(), false)), [1, 1]);
+        assert_eq!(
+            [&few, &many, &Strands::default()].map(|strands| step_of(strands.points(), true)),
+            [1, 5, 1]
+        );
     }
 }
