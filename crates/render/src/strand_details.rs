@@ -71,7 +71,8 @@ impl StrandDetails {
                 .as_ref()
                 .is_some_and(|old| Arc::ptr_eq(old, style) || is_alike(&old.strands, &style.strands))
         };
-        if !list_changed && self.fine == count && same_style() {
+        let is_whole = self.fine == count && self.words.len() == count * fine.points_per_strand;
+        if !list_changed && is_whole && same_style() {
             self.style = Some(Arc::clone(style));
             return false;
         }

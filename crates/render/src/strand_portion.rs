@@ -13,6 +13,13 @@ const HEAD_HEIGHT: f32 = 0.1;
 /// A camera inside the hair sees it from this far, metres.
 const NEAREST: f32 = 0.1;
 
+/// The size of a metre at the head in an image `height` pixels high.
+pub(crate) fn pixels_per_metre(input: &FrameInput, height: u32) -> f32 {
+    let head = input.world_from_head.transform_point3(glam::Vec3::Y * HEAD_HEIGHT);
+    let distance = input.camera.eye.distance(head).max(NEAREST);
+    input.camera.pixels_per_metre_at_one_metre(height) / distance
+}
+
 /// The strands of an image `height` pixels high: `None` for those that are stored.
 ///
 /// As many strands are drawn as make each about `target` pixels wide at the distance of the head, and at most `most` points.
@@ -45,9 +52,7 @@ pub(crate) fn portion_of(
     if picture.strands == StrandCount::Fixed {
         return Some(Portion::of_all(picture.strand_number.clamp(1.0, most.max(1.0)) as usize));
     }
-    let head = input.world_from_head.transform_point3(glam::Vec3::Y * HEAD_HEIGHT);
-    let distance = input.camera.eye.distance(head).max(NEAREST);
-    let scale = input.camera.pixels_per_metre_at_one_metre(height) / distance;
+    let scale = pixels_per_metre(input, height);
     let covered = look.diameter * look.real_hairs;
     let wanted = covered * scale / target * picture.strand_detail.clamp(0.1, 10.0);
     let wanted = if wanted.is_finite() { wanted } else { MAX };

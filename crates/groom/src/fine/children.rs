@@ -36,8 +36,12 @@ const LENGTH_STEPS: f32 = 16.0;
 /// The strands of a hairstyle in the order in which they are drawn; see the [module](crate::fine).
 #[derive(Clone, Debug, Default)]
 pub struct FineStrands {
-    /// Points of every strand.
+    /// Points of every strand: those of the longest stored one, or fewer.
     pub points_per_strand: usize,
+    /// Points of the longest stored strand.
+    stored_points: usize,
+    /// The length of the longest guide, metres.
+    pub longest_m: f32,
     /// The list: stored strands, then children.
     pub strands: Vec<FineStrand>,
     order: Vec<u32>,
@@ -179,6 +183,7 @@ impl FineStrands {
             self.rest = Some(Arc::clone(style));
             let source = Source::of(style);
             let lengths = lengths_of(style);
+            self.longest_m = longest(&style.guides);
             if self.of != source {
                 self.start(source);
                 self.lengths = lengths;
@@ -218,9 +223,25 @@ impl FineStrands {
         self.neighbours.clear();
         let longest =
             source.first_point.windows(2).map(|ends| ends[1].saturating_sub(ends[0]) as usize).max();
-        self.points_per_strand = longest.unwrap_or(2).clamp(2, MAX_POINTS);
+        self.stored_points = longest.unwrap_or(2).clamp(2, MAX_POINTS);
+        self.points_per_strand = self.stored_points;
         self.of = source;
     }
+
+    /// Gives each strand as many points as the longest stored one has, but no more than `most`.
+    pub fn limit_points(&mut self, most: usize) {
+        self.points_per_strand = self.stored_points.min(most).max(2);
+    }
+}
+
+/// The length of the longest guide, metres.
+fn longest(guides: &Guides) -> f32 {
+    let length = |guide: usize| {
+        let links = 1..guides.points_per_guide;
+        links.map(|i| guides.point(guide, i - 1).distance(guides.point(guide, i))).sum::<f32>()
+    };
+    // False for NaN.
+    (0..guides.count()).map(length).fold(0.0, |most, length| if length > most { length } else { most })
 }
 
 fn stored_strand(source: &Source, strand: u32) -> FineStrand {

@@ -6,13 +6,17 @@ use lovelock_groom::{Hairstyle, Strands};
 
 use crate::FrameInput;
 use crate::strand_details::StrandDetails;
-use crate::strand_portion::portion_of;
+use crate::strand_portion::{pixels_per_metre, portion_of};
 use crate::strand_values::at_points;
 
 /// The width of a strand that is aimed at, pixels: thinner ones cost as much and can hardly be told apart.
 const TARGET_PIXELS: f32 = 0.7;
 /// The same in a draft.
 const DRAFT_PIXELS: f32 = 1.4;
+/// The length of the segments of strands that a draft aims at, pixels. Stored strands have as many as their curls need from near.
+const DRAFT_SEGMENT: f32 = 2.0;
+/// Strands of a draft have a multiple of so many points, so that an approaching camera does not change their number in every image.
+const DRAFT_POINTS: usize = 16;
 /// The most points of fine strands: about 110 bytes each with everything that drawing keeps of them.
 const MAX_POINTS: u64 = 1 << 22;
 
@@ -59,7 +63,8 @@ pub(super) struct DrawnStrands {
     strands: Strands,
     /// Constant properties of the points that are drawn, and of some more.
     pub details: StrandDetails,
-    portion: Option<Portion>,
+    /// The part of the fine strands that is drawn, with the points of each.
+    portion: Option<(Portion, usize)>,
 }
 
 impl DrawnStrands {
@@ -72,22 +77,29 @@ impl DrawnStrands {
     pub fn choose(&mut self, input: &FrameInput, height: u32) -> bool {
         // Makes the list of this hairstyle known, without a strand.
         self.fine.follow(input.style, 0);
+        let mut most = usize::MAX;
+        if input.is_draft {
+            let segments = self.fine.longest_m * pixels_per_metre(input, height) / DRAFT_SEGMENT;
+            // Saturates.
+            most = (segments as usize).max(1).next_multiple_of(DRAFT_POINTS);
+        }
+        self.fine.limit_points(most);
         let points = self.fine.points_per_strand;
         let target = if input.is_draft { DRAFT_PIXELS } else { TARGET_PIXELS };
         let portion = portion_of(input, height, target, (points, MAX_POINTS));
-        let before = std::mem::replace(&mut self.portion, portion);
+        let before = std::mem::replace(&mut self.portion, portion.map(|portion| (portion, points)));
         let Some(portion) = portion else {
             self.details.follow(input.style);
             return before.is_none();
         };
         let longer = self.fine.follow(input.style, portion.drawn);
         self.details.follow_fine(input.style, &self.fine, longer);
-        before.is_some_and(|before| before.drawn == portion.drawn)
+        before.is_some_and(|(before, of)| before.drawn == portion.drawn && of == points)
     }
 
     /// Marks the stored strands that the chosen ones are made from, if fine ones were chosen.
     pub fn mark_parents(&self, marks: &mut [bool]) {
-        let drawn = self.portion.map_or(0, |portion| portion.drawn.min(self.fine.strands.len()));
+        let drawn = self.portion.map_or(0, |(portion, _)| portion.drawn.min(self.fine.strands.len()));
         for &parent in self.fine.strands[..drawn].iter().flat_map(|strand| &strand.parents) {
             if let Some(mark) = marks.get_mut(parent as usize) {
                 *mark = true;
@@ -97,7 +109,7 @@ impl DrawnStrands {
 
     /// Makes the chosen strands from the `stored` ones of the frame, unless they are the `same` as those of the last one.
     pub fn grow(&mut self, width: Width, stored: &Strands, same: bool) {
-        if let Some(portion) = self.portion.filter(|_| !same) {
+        if let Some((portion, _)) = self.portion.filter(|_| !same) {
             grow_fine(width, &self.fine, portion.drawn, stored, &mut self.parents, &mut self.strands);
         }
     }
@@ -109,14 +121,14 @@ impl DrawnStrands {
 
     /// One number per drawn point from one per stored strand of `style`.
     pub fn at_points(&self, style: &Hairstyle, of_strands: &[f32]) -> Vec<f32> {
-        let fine = self.portion.map(|portion| {
-            (&self.fine.strands[..portion.drawn.min(self.fine.strands.len())], self.fine.points_per_strand)
+        let fine = self.portion.map(|(portion, points)| {
+            (&self.fine.strands[..portion.drawn.min(self.fine.strands.len())], points)
         });
         at_points(&style.strands, fine, of_strands)
     }
 
     /// The part of the fine strands that is drawn, with the points of each; `None` for stored strands.
     pub fn portion(&self) -> Option<(Portion, usize)> {
-        self.portion.map(|portion| (portion, self.fine.points_per_strand))
+        self.portion
     }
 }
