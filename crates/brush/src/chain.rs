@@ -36,9 +36,15 @@ pub(crate) fn lay(before: &[Vec3], targets: &[Vec3], lengths: &[f32], obstacle: 
             }
         }
         let mut p = from + along * *length;
-        let clear = obstacle.distance(before[i + 1]).0.clamp(0.0, CLEAR);
+        let mut clear = None;
         for _ in 0..3 {
             let (distance, normal) = obstacle.distance(p);
+            // Most points are far from the body: where they were before does not matter then.
+            if distance >= CLEAR {
+                break;
+            }
+            let clear =
+                *clear.get_or_insert_with(|| obstacle.distance(before[i + 1]).0.clamp(0.0, CLEAR));
             if distance >= clear {
                 break;
             }
