@@ -43,8 +43,7 @@ pub(crate) fn lay(before: &[Vec3], targets: &[Vec3], lengths: &[f32], obstacle: 
             if distance >= CLEAR {
                 break;
             }
-            let clear =
-                *clear.get_or_insert_with(|| obstacle.distance(before[i + 1]).0.clamp(0.0, CLEAR));
+            let clear = *clear.get_or_insert_with(|| obstacle.distance(before[i + 1]).0.clamp(0.0, CLEAR));
             if distance >= clear {
                 break;
             }
