@@ -233,10 +233,12 @@ mod tests {
         println!("{share} white, {mixed} of the children of white strands are not");
         assert!((share - 0.3).abs() < 0.03, "{share}");
         assert!(mixed > 0.15 && mixed < 0.4, "{mixed}");
-        // The same strands and colours are told from others.
+        // Nothing is made anew for the same strands and colours, as while guides are brushed.
         let version = details.version;
-        let again = Arc::new((*style).clone());
-        assert!(details.follow_fine(&again, &fine, false) && details.version == version);
+        let mut again = (*style).clone();
+        again.guides.x[5] += 0.01;
+        assert!(!details.follow_fine(&Arc::new(again), &fine, false) && details.version == version);
+        assert!(details.follow_fine(&style, &fine, true) && details.version == version, "the same again");
         let mut other = (*style).clone();
         other.strands.taper.iter_mut().for_each(|taper| *taper *= 0.5);
         assert!(details.follow_fine(&Arc::new(other), &fine, false) && details.version == version + 1);

@@ -90,3 +90,21 @@ impl Publisher {
         self.last = None;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use lovelock_gpu::layout_in_shader;
+
+    use super::*;
+
+    #[test]
+    fn the_constants_lie_where_the_shader_reads_them() {
+        let found = crate::shaders().into_iter().find(|(name, _)| *name == "publish");
+        let (_, source) = found.expect("the shader");
+        let fields = [offset_of!(Publish, place), offset_of!(Publish, slots), offset_of!(Publish, points)];
+        let ends = [offset_of!(Publish, guide_points), size_of::<Publish>()];
+        assert_eq!(layout_in_shader(&source, "Publish"), [&fields[..], &ends].concat());
+    }
+}

@@ -226,7 +226,7 @@ mod tests {
             samples
         );
         let substep = offsets!(SubstepUniform, index, checks_factor, is_last, passed);
-        for (name, source) in crate::shaders() {
+        for (name, source) in crate::shaders().into_iter().filter(|(name, _)| *name != "publish") {
             assert_eq!(layout_in_shader(&source, "Step"), step, "{name}");
             assert_eq!(layout_in_shader(&source, "Substep"), substep, "{name}");
         }

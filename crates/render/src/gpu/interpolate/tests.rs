@@ -1,18 +1,20 @@
 //! Compares strands of the GPU with those of the CPU, with guides at rest and moved.
 
+use std::mem::offset_of;
 use std::sync::{Arc, OnceLock};
 
 use glam::{Affine3A, Quat, Vec3};
 use lovelock_base::clock::Stopwatch;
 use lovelock_gpu::{
-    BufferPool, Gpu, GpuError, GrowBuffer, PassTimer, PooledBuffer, check_shader, read_buffer, wgpu,
+    BufferPool, Gpu, GpuError, GrowBuffer, PassTimer, PooledBuffer, check_shader, layout_in_shader,
+    read_buffer, wgpu,
 };
 use lovelock_groom::{
     GroomSettings, GuideFrame, Guides, Hairstyle, ImportSettings, PlainHead, Preset, StrandSet, Strands,
     Wisp, grow, import, interpolate, load_hair,
 };
 
-use super::{Interpolation, shaders};
+use super::{Interpolation, Mix, shaders};
 use crate::ResidentGuides;
 
 fn device() -> Option<&'static Arc<Gpu>> {
@@ -143,6 +145,14 @@ fn shaders_are_valid() {
     for (label, source) in shaders() {
         check_shader(&source).unwrap_or_else(|error| panic!("{label}: {error}"));
     }
+}
+
+#[test]
+fn the_constants_of_mixed_guides_lie_where_the_shader_reads_them() {
+    let (_, source) = shaders().into_iter().find(|(label, _)| label == "mix guides").expect("the shader");
+    let fields = [offset_of!(Mix, heads), offset_of!(Mix, t), offset_of!(Mix, points_per_guide)];
+    let ends = [offset_of!(Mix, guide_points), size_of::<Mix>()];
+    assert_eq!(layout_in_shader(&source, "Mix"), [&fields[..], &ends].concat());
 }
 
 #[test]
