@@ -324,12 +324,17 @@ impl Gpu {
     /// # Errors
     /// The first error that the driver reports.
     pub fn checked<T>(&self, make: impl FnOnce() -> T) -> Result<T, GpuError> {
+        self.apart(make).map_err(|error| GpuError::Shader(format!("{}: {error}", self.info.name)))
+    }
+
+    /// Runs `make`. What the driver refuses of it is told here, and to no other handle of the device by [`Gpu::check`].
+    ///
+    /// # Errors
+    /// The first command of `make` that the driver rejects.
+    pub fn apart<T>(&self, make: impl FnOnce() -> T) -> Result<T, wgpu::Error> {
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let made = make();
-        match pollster::block_on(scope.pop()) {
-            None => Ok(made),
-            Some(error) => Err(GpuError::Shader(format!("{}: {error}", self.info.name))),
-        }
+        pollster::block_on(scope.pop()).map_or(Ok(made), Err)
     }
 
     /// Compiles a composed shader.

@@ -61,7 +61,7 @@ pub struct FollowingStrands {
     strands: Strands,
     /// What they were made from.
     of: Option<(Arc<Hairstyle>, GuideFrame)>,
-    /// Whether each strand is where it was in an earlier frame.
+    /// Whether each strand is out of date.
     is_stale: Vec<bool>,
 }
 
@@ -181,7 +181,7 @@ impl Job<'_> {
     }
 }
 
-/// Consecutive strands: the coordinates of their points, and whether each is out of date; all are if that is not given.
+/// Consecutive strands: the coordinates of their points, and whether each is out of date. All are computed if that is not given.
 struct Slices<'a> {
     x: &'a mut [f32],
     y: &'a mut [f32],

@@ -193,7 +193,6 @@ impl GuideDevice {
         };
         let [state, contacts, totals] = bytes;
         readback.read(gpu, &mut [&mut *state, &mut *contacts, &mut *totals])?;
-        gpu.check()?;
         buffers.known.state = Some(after);
         outcome.state.resize(state.len() / 4, 0.0);
         bytemuck::cast_slice_mut::<f32, u8>(&mut outcome.state).copy_from_slice(state);
@@ -239,7 +238,11 @@ impl StepDevice for GuideDevice {
         if self.is_lost {
             return Err("the graphics device was lost".to_owned());
         }
-        let done = self.submit(step, reads);
+        // On the window's device, others use the queue too.
+        let gpu = Arc::clone(&self.gpu);
+        let done = gpu
+            .apart(|| self.submit(step, reads))
+            .unwrap_or_else(|error| Err(GpuError::Refused(error.to_string())));
         self.has_room = !matches!(done, Err(GpuError::Input(_)));
         done.map_err(|error| self.failed(&error))
     }

@@ -90,7 +90,8 @@ impl GuideKernels {
             lengths: kernel("lengths", "lengths")?,
             prefetch: kernel("field", "prefetch")?,
             place_points: kernel("contacts", "place_points")?,
-            publish: kernel("publish", "publish")?,
+            // Its output is one of several buffers in turn.
+            publish: kernel("publish", "publish")?.keeping(8),
         })
     }
 

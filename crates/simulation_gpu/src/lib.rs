@@ -2,8 +2,8 @@
 //!
 //! A [`GuideDevice`] does the part of a step of [`lovelock_simulation::Simulation`] that costs most: it advances all guides
 //! from the state of the last step, by the same definition, with all integrators. Everything that all guides share is
-//! prepared by the simulator, and after the step the state is in the simulator again, so that takes, brushes, ties and
-//! saved states work as on the CPU.
+//! prepared by the simulator, and after the step the state is in the simulator again, or at least what moves, so that
+//! takes, brushes, ties and saved states work as on the CPU.
 //!
 //! In a window, a device may be that of the renderer: then the guides of a step are drawn from its memory, and a step is begun while the
 //! one before it is drawn ([`GuideDevice::publishing`], [`lovelock_simulation::Simulation::begin_on`]).

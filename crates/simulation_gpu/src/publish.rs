@@ -106,5 +106,6 @@ mod tests {
         let fields = [offset_of!(Publish, place), offset_of!(Publish, slots), offset_of!(Publish, points)];
         let ends = [offset_of!(Publish, guide_points), size_of::<Publish>()];
         assert_eq!(layout_in_shader(&source, "Publish"), [&fields[..], &ends].concat());
+        assert!(source.text().contains(&format!("const SLOTS = {SLOTS}u;")), "slots of a block");
     }
 }

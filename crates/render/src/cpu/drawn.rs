@@ -80,8 +80,8 @@ impl DrawnStrands {
         let mut most = usize::MAX;
         if input.is_draft {
             let segments = self.fine.longest_m * pixels_per_metre(input, height) / DRAFT_SEGMENT;
-            // Saturates.
-            most = (segments as usize).max(1).next_multiple_of(DRAFT_POINTS);
+            // NaN is 0.
+            most = (segments.clamp(1.0, 65_536.0) as usize).max(1).next_multiple_of(DRAFT_POINTS);
         }
         self.fine.limit_points(most);
         let points = self.fine.points_per_strand;

@@ -44,8 +44,11 @@ impl LastSteps {
         self.known = true;
     }
 
-    /// Takes the engine's instant for the later of the two, before it begins the next step.
+    /// Takes the engine's instant for the later of the two, if it is not that already, before it begins the next step.
     pub(crate) fn follow(&mut self, engine: &Engine) {
+        if self.known && self.now.wall_frame == engine.taken {
+            return;
+        }
         if self.known {
             std::mem::swap(&mut self.before, &mut self.now);
             self.resident.swap(0, 1);

@@ -15,8 +15,8 @@ pub(super) struct Stepper {
     choice: Option<Backend>,
     /// The device of the window, if steps are drawn there. There is none otherwise.
     window: WindowDevice,
-    /// Kept for other hair, so that the device is opened once.
-    kernels: Option<Arc<GuideKernels>>,
+    /// Kept for other hair and for copies, so that the device is opened once.
+    kernels: KernelCell,
     device: Option<GuideDevice>,
     /// Whether the last step was that of the device.
     on_device: bool,
@@ -24,6 +24,9 @@ pub(super) struct Stepper {
     failure: Option<Failure>,
     note: Option<Arc<str>>,
 }
+
+/// Kernels on a device beside that of the window, once they are needed; of a stepper and its copies.
+type KernelCell = Arc<Mutex<Option<Arc<GuideKernels>>>>;
 
 /// How long the CPU goes on in place of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,11 +61,11 @@ impl Stepper {
         Self {
             choice: self.choice,
             window: WindowDevice::default(),
-            kernels: self.kernels.clone(),
+            kernels: Arc::clone(&self.kernels),
             device: None,
             on_device: self.on_device,
             failure: self.failure.filter(|_| !self.is_shared()),
-            note: self.note.clone(),
+            note: self.note.clone().filter(|_| !self.is_shared()),
         }
     }
 
@@ -178,16 +181,23 @@ impl Stepper {
                 .inspect_err(|error| self.fail(Failure::Device(Some(gpu.number())), &error.to_string()));
             return failed.ok().map(|kernels| GuideDevice::new(Arc::new(kernels)).publishing());
         }
-        self.kernels.take_if(|kernels| kernels.gpu().is_lost());
-        if self.kernels.is_none() {
-            match kernels(self.choice == Some(Backend::Auto)) {
-                Ok(Some(kernels)) => self.kernels = Some(kernels),
-                // Automatic chooses the CPU then, which is no failure to tell.
-                Ok(None) => self.failure = Some(Failure::Device(None)),
-                Err(reason) => self.fail(Failure::Device(None), &reason),
+        let known = self.kernel_cell().clone().filter(|kernels| !kernels.gpu().is_lost());
+        let found =
+            known.map_or_else(|| kernels(self.choice == Some(Backend::Auto)), |known| Ok(Some(known)));
+        match found {
+            Ok(Some(kernels)) => {
+                *self.kernel_cell() = Some(Arc::clone(&kernels));
+                return Some(GuideDevice::new(kernels));
             }
+            // Automatic chooses the CPU then, which is no failure to tell.
+            Ok(None) => self.failure = Some(Failure::Device(None)),
+            Err(reason) => self.fail(Failure::Device(None), &reason),
         }
-        self.kernels.as_ref().map(|kernels| GuideDevice::new(Arc::clone(kernels)))
+        None
+    }
+
+    fn kernel_cell(&self) -> MutexGuard<'_, Option<Arc<GuideKernels>>> {
+        self.kernels.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Whether steps are drawn on the device of the window.
@@ -213,7 +223,7 @@ impl Stepper {
         let note = format!("{reason}; the CPU simulates the hair");
         tracing::warn!("{note}");
         if matches!(failure, Failure::Device(_)) {
-            self.kernels = None;
+            *self.kernel_cell() = None;
         }
         (self.device, self.failure, self.note) = (None, Some(failure), Some(note.into()));
     }

@@ -112,7 +112,7 @@ impl SimulationThread {
             let requests = self.shared.mailbox.take(self.until_calm(timeout));
             if requests.stop {
                 // Closing the window must not lose the recording.
-                self.finish_begun_step();
+                let _ = catch_unwind(AssertUnwindSafe(|| self.finish_begun_step()));
                 self.end_take(None);
                 return;
             }

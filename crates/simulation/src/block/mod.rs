@@ -149,7 +149,7 @@ pub(crate) struct Outcome {
     pub(crate) max_speed_squared: f32,
 }
 
-/// Places of a guide that differ by less count as rounding, square metres.
+/// Places of a guide that differ by less count as the same, square metres: its links are off by as little until the next step.
 const ROUNDING_SQUARED: f32 = 1e-12;
 
 /// Penetration of a point into a collider.
@@ -288,7 +288,8 @@ impl Block {
 
     /// Gives the guide in lane `k` the places that it has in lane `lane` of `old`, if both have the same rest shape or those places are nearly
     /// its own: what [`Block::copy_motion`] computes differs from them by rounding, and hair that nobody touches should stay where it is.
-    pub(crate) fn keep_places(&mut self, k: usize, old: &Block, lane: usize) {
+    /// `with_bends` says whether `old` has its bends.
+    pub(crate) fn keep_places(&mut self, k: usize, old: &Block, lane: usize, with_bends: bool) {
         let points = self.points();
         let same3 = |a: &[Lane3], b: &[Lane3]| (0..points).all(|i| at(&a[i], k) == at(&b[i], lane));
         let (own, rest) = (&self.rest, &old.rest);
@@ -303,7 +304,9 @@ impl Block {
         if same {
             for i in 0..points {
                 put(&mut self.position[i], k, at(&old.position[i], lane));
-                put(&mut self.bend[i], k, at(&old.bend[i], lane));
+                if with_bends {
+                    put(&mut self.bend[i], k, at(&old.bend[i], lane));
+                }
             }
         } else if old.points() == points && (0..points).all(is_near) {
             for i in 0..points {

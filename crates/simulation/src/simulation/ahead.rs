@@ -135,7 +135,10 @@ impl Simulation {
             (Some(field), Some(placed)) => field.is(placed.field, placed.pose.lift),
             (_, placed) => placed.is_none(),
         };
-        same_field && self.clamped_links == settings.clamped_links && device.holds(self.stamps.state)
+        same_field
+            && self.colliders.len() == input.colliders.len()
+            && self.clamped_links == settings.clamped_links
+            && device.holds(self.stamps.state)
     }
 
     pub(super) fn report_of(&self, begun: &Begun, measured: &Measured) -> StepReport {

@@ -95,7 +95,7 @@ impl Simulation {
             }
             for (block, old) in next.blocks.iter_mut().zip(&gathered) {
                 block.copy_motion(old, &from_head);
-                if !retied && !self.is_partial {
+                if !retied {
                     self.keep_places(block);
                 }
             }
@@ -121,7 +121,7 @@ impl Simulation {
     fn keep_places(&self, block: &mut Block) {
         for k in 0..block.used {
             let (from, lane) = self.slots[block.guides[k] as usize];
-            block.keep_places(k, &self.blocks[from as usize], lane as usize);
+            block.keep_places(k, &self.blocks[from as usize], lane as usize, !self.is_partial);
         }
     }
 
@@ -227,7 +227,7 @@ impl Simulation {
             let old = block.clone();
             block.copy_motion(&old, &from_head);
             for k in (0..block.used).filter(|k| !moves[before.guides[*k] as usize]) {
-                block.keep_places(k, &before, k);
+                block.keep_places(k, &before, k, true);
             }
             // The factors are outdated.
             block.bending = Bending::new(points);

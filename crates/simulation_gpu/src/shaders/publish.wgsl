@@ -17,7 +17,7 @@ struct Publish {
 // All x, then all y, then all z.
 @group(0) @binding(3) var<storage, read_write> guides: array<f32>;
 
-const LANES = 16u;
+const SLOTS = 16u;
 const NO_GUIDE = 0xffffffffu;
 
 /// One thread per point and slot.
@@ -28,16 +28,16 @@ fn publish(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
         return;
     }
     // Numbers of points and slots alternate as in `place_of` of step.wgsl.
-    let row = at / LANES;
-    let lane = at % LANES;
-    let guide = guide_in[row / publish_of.points * LANES + lane];
+    let row = at / SLOTS;
+    let lane = at % SLOTS;
+    let guide = guide_in[row / publish_of.points * SLOTS + lane];
     if guide == NO_GUIDE {
         return;
     }
     let to = guide * publish_of.points + row % publish_of.points;
     let n = publish_of.guide_points;
-    let source = row * (3u * LANES) + lane;
+    let source = row * (3u * SLOTS) + lane;
     guides[to] = moved[source] + publish_of.place.x;
-    guides[n + to] = moved[source + LANES] + publish_of.place.y;
-    guides[2u * n + to] = moved[source + 2u * LANES] + publish_of.place.z;
+    guides[n + to] = moved[source + SLOTS] + publish_of.place.y;
+    guides[2u * n + to] = moved[source + 2u * SLOTS] + publish_of.place.z;
 }

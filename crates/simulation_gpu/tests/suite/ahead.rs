@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 use lovelock_gpu::{Gpu, read_buffer};
 use lovelock_groom::{GuideFrame, Guides, Preset};
+use lovelock_motion::{ColliderShape, PlacedCollider};
 use lovelock_simulation::{Simulation, SimulationSettings, StepInput, StepReport};
 use lovelock_simulation_gpu::{GuideDevice, GuideKernels};
 
@@ -96,6 +97,18 @@ fn what_is_not_the_next_step_needs_the_whole_state() {
         assert_eq!((own, refusal), (report, None), "{at} s");
         assert_eq!(waited.state_hash(), begun.state_hash(), "{at} s");
     }
+    // Another number of colliders, for which the device makes room anew.
+    for (n, count) in [(3.0, 1), (4.0, 3)] {
+        let balls = [Affine3A::from_translation(Vec3::Y * 3.0); 3].map(|world_from_rest| PlacedCollider {
+            shape: ColliderShape::Capsule { a: Vec3::ZERO, b: Vec3::Y, radius_a: 0.1, radius_b: 0.1 },
+            world_from_rest,
+        });
+        let mut input = stage.at(Some(3.0 + n * f64::from(STEP_SECS)));
+        input.colliders = &balls[..count];
+        let report = step_on(&mut device, &mut waited, &input, &settings, STEP_SECS);
+        assert_eq!(ahead(&mut other, &mut begun, &input), report);
+        assert_eq!(waited.state_hash(), begun.state_hash(), "{count} colliders");
+    }
     // Hair that was moved by hand.
     let mut frame =
         GuideFrame { time_secs: 0.0, world_from_head: Affine3A::IDENTITY, guides: Guides::default() };
@@ -105,7 +118,7 @@ fn what_is_not_the_next_step_needs_the_whole_state() {
     for simulation in [&mut waited, &mut begun] {
         simulation.move_guides(&frame, &rest, &[0, 4]);
     }
-    let input = stage.at(Some(3.0 + 3.0 * f64::from(STEP_SECS)));
+    let input = stage.at(Some(3.0 + 5.0 * f64::from(STEP_SECS)));
     let report = step_on(&mut device, &mut waited, &input, &settings, STEP_SECS);
     assert_eq!(ahead(&mut other, &mut begun, &input), report);
     assert_eq!(waited.state_hash(), begun.state_hash());

@@ -102,9 +102,10 @@ impl Interpolation {
         let source = ShaderSource::new(&[FRAMES, STRANDS]);
         let storage = wgpu::BufferUsages::STORAGE;
         Ok(Self {
-            carry_frames: Kernel::new(gpu, "carry frames", &source, "carry_frames")?,
-            place_points: Kernel::new(gpu, "place points", &source, "place_points")?,
-            mix_guides: Kernel::new(gpu, "mix guides", &ShaderSource::new(&[MIX]), "mix_guides")?,
+            // Guides on the device are in several buffers in turn.
+            carry_frames: Kernel::new(gpu, "carry frames", &source, "carry_frames")?.keeping(8),
+            place_points: Kernel::new(gpu, "place points", &source, "place_points")?.keeping(8),
+            mix_guides: Kernel::new(gpu, "mix guides", &ShaderSource::new(&[MIX]), "mix_guides")?.keeping(8),
             style: None,
             instant: gpu.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("instant of guides"),

@@ -97,7 +97,7 @@ impl SimulationThread {
         }
         let due = self.playback.advance(elapsed_secs);
         // It is shown at once, unless images lie between steps.
-        changed |= finished && !self.playback.shows_between();
+        changed |= finished && !(self.playback.is_playing() && self.playback.shows_between());
         for left in (0..due.steps).rev() {
             let Some(engine) = &self.engine else { return };
             if engine.is_at_end() {

@@ -409,9 +409,17 @@ fn hair_that_the_device_of_the_window_simulates_is_drawn_from_there() {
     driven.turn(slow(0.4), 0.0);
     // The first images stand until there are two steps.
     let shown: Vec<_> = (0..9).map(|_| driven.picture()).skip(3).collect();
-    for pair in shown.windows(2) {
-        assert!((pair[1].time_secs - pair[0].time_secs - 0.4 * STEP_SECS).abs() < 1e-6, "even steps");
-    }
+    let are_even = |shown: &[Arc<FrameSnapshot>], steps: f64| {
+        for pair in shown.windows(2) {
+            let apart = (pair[1].time_secs - pair[0].time_secs) / STEP_SECS;
+            assert!((apart - steps).abs() < 1e-4, "{apart} steps in place of {steps}");
+        }
+    };
+    are_even(&shown, 0.4);
+    // More than one step from image to image.
+    driven.turn(slow(1.5), 0.0);
+    let quick: Vec<_> = (0..9).map(|_| driven.picture()).skip(3).collect();
+    are_even(&quick, 1.5);
     let mut renderer = GpuRenderer::new(gpu).expect("a renderer");
     let frame = &shown[4];
     let [there, here] = [true, false].map(|from_device| drawn(&mut renderer, frame, &project, from_device));
