@@ -240,9 +240,12 @@ impl StepDevice for GuideDevice {
         }
         // On the window's device, others use the queue too.
         let gpu = Arc::clone(&self.gpu);
-        let done = gpu
-            .apart(|| self.submit(step, reads))
-            .unwrap_or_else(|error| Err(GpuError::Refused(error.to_string())));
+        let done = gpu.apart(|| self.submit(step, reads)).unwrap_or_else(|error| {
+            if gpu.is_lost() {
+                gpu.check()?;
+            }
+            Err(GpuError::Refused(error.to_string()))
+        });
         self.has_room = !matches!(done, Err(GpuError::Input(_)));
         done.map_err(|error| self.failed(&error))
     }
