@@ -5,6 +5,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use lovelock_base::memory::list_bytes;
 use lovelock_base::simd::Width;
@@ -40,7 +41,9 @@ thread_local! {
 /// If `frame` has fewer guides than the style, or the style fails [`Hairstyle::check`].
 pub fn interpolate(style: &Hairstyle, frame: &GuideFrame, strands: &mut Strands) {
     fit(style, strands);
-    Job { width: Width::widest(), style, frame, before: None, needed: None }.run(strands, None);
+    let computed = AtomicBool::new(false);
+    Job { width: Width::widest(), style, frame, before: None, needed: None, computed: &computed }
+        .run(strands, None);
 }
 
 /// Makes room for the strands of `style`.
@@ -63,6 +66,7 @@ pub struct FollowingStrands {
     of: Option<(Arc<Hairstyle>, GuideFrame)>,
     /// Whether each strand is out of date.
     is_stale: Vec<bool>,
+    has_computed: bool,
 }
 
 impl FollowingStrands {
@@ -77,7 +81,7 @@ impl FollowingStrands {
         frame: &GuideFrame,
         needed: Option<&[bool]>,
     ) -> &Strands {
-        let Self { strands, of, is_stale } = self;
+        let Self { strands, of, is_stale, has_computed } = self;
         let needed = needed.filter(|needed| needed.len() == style.strands.count());
         let before = of.as_ref().map(|(old, then)| (old, then)).filter(|before| {
             is_comparable(*before, (style, frame)) && is_stale.len() == style.strands.count()
@@ -87,7 +91,10 @@ impl FollowingStrands {
             is_stale.clear();
             is_stale.resize(style.strands.count(), true);
         }
-        Job { width: Width::widest(), style, frame, before, needed }.run(strands, Some(is_stale));
+        let computed = AtomicBool::new(false);
+        Job { width: Width::widest(), style, frame, before, needed, computed: &computed }
+            .run(strands, Some(is_stale));
+        *has_computed = computed.into_inner();
         match of {
             Some((old, then)) => {
                 old.clone_from(style);
@@ -96,6 +103,16 @@ impl FollowingStrands {
             none => *none = Some((Arc::clone(style), frame.clone())),
         }
         strands
+    }
+
+    /// The strands of the last call.
+    pub fn strands(&self) -> &Strands {
+        &self.strands
+    }
+
+    /// Whether the last call computed any strand.
+    pub fn has_computed(&self) -> bool {
+        self.has_computed
     }
 
     /// The memory of the strands and of the guides, bytes.
@@ -139,6 +156,8 @@ struct Job<'a> {
     before: Option<Placed<'a>>,
     /// Whether each strand is needed; all are if this is not given.
     needed: Option<&'a [bool]>,
+    /// Set when a strand is computed.
+    computed: &'a AtomicBool,
 }
 
 impl Job<'_> {
@@ -248,6 +267,7 @@ fn wisps_into(
                 *is_stale = false;
             }
             if !std::mem::replace(&mut is_placed, true) {
+                job.computed.store(true, Ordering::Relaxed);
                 scratch.curve.place(&style.guides, wisp, &style.widest, &frame.guides, frame.world_from_head);
             }
             scratch.curve.blend_controls(set.weights[strand], &mut scratch.controls);
@@ -371,7 +391,9 @@ mod tests {
         for &width in Width::ALL.iter().filter(|width| width.is_available()) {
             let mut strands = Strands::default();
             fit(&style, &mut strands);
-            Job { width, style: &style, frame: &frame, before: None, needed: None }.run(&mut strands, None);
+            let computed = AtomicBool::new(false);
+            Job { width, style: &style, frame: &frame, before: None, needed: None, computed: &computed }
+                .run(&mut strands, None);
             assert!(bits(&strands) == expected, "{width:?}");
         }
     }
@@ -383,6 +405,9 @@ mod tests {
         let mut frame = GuideFrame::at_rest(&style.guides, Affine3A::from_rotation_y(0.2), 0.0);
         let mut following = FollowingStrands::default();
         assert!(bits(following.follow(&style, &frame, None)) == whole(&style, &frame));
+        assert!(following.has_computed());
+        following.follow(&style, &frame, None);
+        assert!(!following.has_computed(), "nothing has moved");
         // One wisp moves.
         let guide = style.wisps[7].guides[1] as usize;
         frame.guides.x[guide * points + 9] += 0.01;
@@ -406,6 +431,7 @@ mod tests {
             assert_eq!(some[1][of.clone()] == expected[1][of], needed[strand], "strand {strand}");
         }
         assert!(bits(following.follow(&style, &frame, None)) == expected);
+        assert!(following.has_computed(), "the others, although nothing has moved");
         // A head that turns moves all, and so does a style with other strands.
         frame.world_from_head = Affine3A::from_rotation_z(0.1);
         assert!(bits(following.follow(&style, &frame, None)) == whole(&style, &frame));

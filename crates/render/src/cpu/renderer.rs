@@ -227,11 +227,15 @@ impl CpuRenderer {
         let mut drawn = std::mem::take(&mut self.drawn);
         let same_points = drawn.choose(input, height) && unchanged.strands;
         let mut made = std::mem::take(&mut self.strands);
+        let mut is_kept = unchanged.strands;
         let strands = match input.hair {
             HairPose::Strands(strands) => strands,
             HairPose::Guides(guides) | HairPose::Resident(guides, _) => {
                 let needed = needed_strands(input, &drawn, &mut self.needed);
-                made.follow(input.style, guides, needed)
+                made.follow(input.style, guides, needed);
+                // After a draft, a whole image computes strands although nothing has moved.
+                is_kept &= !made.has_computed();
+                made.strands()
             }
         };
         let stored_ms = watch.ms();
@@ -239,9 +243,7 @@ impl CpuRenderer {
         let interpolate_ms = watch.ms();
         let now = [stored_ms, interpolate_ms - stored_ms];
         let mut kept_ms = 0.0;
-        for ((made, now), is_kept) in
-            self.interpolated_ms.iter_mut().zip(now).zip([unchanged.strands, same_points])
-        {
+        for ((made, now), is_kept) in self.interpolated_ms.iter_mut().zip(now).zip([is_kept, same_points]) {
             if is_kept {
                 kept_ms += *made;
             } else {
